@@ -1,0 +1,152 @@
+// nadir-listen: prints what a tracker publishes.
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "tracker/listen_silence.h"
+#include "tracker/listen_text.h"
+#include "tracker/wire/pose_reader.h"
+
+namespace {
+
+using nadir::tracker::FrameReader;
+using nadir::tracker::PoseReader;
+using nadir::tracker::ReaderOptions;
+using nadir::tracker::WireFrame;
+using nadir::tracker::WirePose;
+using SteadyClock = std::chrono::steady_clock;
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+struct Options {
+  ReaderOptions reader;
+  bool json = false;
+  bool frames = false;
+  std::uint64_t count = 0;  ///< 0: without end
+};
+
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string line(const WirePose& pose, bool json) {
+  return json ? nadir::tracker::pose_json(pose, now_ns())
+              : nadir::tracker::pose_columns(pose, now_ns());
+}
+std::string line(const WireFrame& frame, bool json) {
+  return json ? nadir::tracker::frame_json(frame, now_ns())
+              : nadir::tracker::frame_columns(frame, now_ns());
+}
+
+/// Says why nothing is printed: first after 3 s of silence, then at a slow rate.
+class SilenceWatch {
+ public:
+  explicit SilenceWatch(const ReaderOptions& options) : options_(options) {}
+
+  void printed() {
+    last_print_ = SteadyClock::now();
+    next_words_ = last_print_ + std::chrono::seconds(3);
+  }
+
+  template <typename Reader>
+  void look(const Reader& reader) {
+    const auto now = SteadyClock::now();
+    if (now < next_words_) return;
+    next_words_ = now + std::chrono::seconds(15);
+    const double silent_s = std::chrono::duration<double>(now - last_print_).count();
+    const std::string words = nadir::tracker::explain_silence(options_, reader.status(), silent_s,
+                                                              nadir::tracker::network_interfaces(),
+                                                              std::getenv("CYCLONEDDS_URI"));
+    std::fprintf(stderr, "nadir-listen: %s\n", words.c_str());
+  }
+
+ private:
+  const ReaderOptions& options_;
+  SteadyClock::time_point last_print_ = SteadyClock::now();
+  SteadyClock::time_point next_words_ = last_print_ + std::chrono::seconds(3);
+};
+
+/// Prints until interrupted, until `count` lines are out, or until nobody reads them (false).
+template <typename Reader, typename Value>
+bool listen(const Options& options) {
+  Reader reader(options.reader);
+  SilenceWatch silence(options.reader);
+  Value value;
+  std::uint64_t lines = 0;
+  while (stop_requested == 0 && (options.count == 0 || lines < options.count)) {
+    if (!reader.poll(&value, std::chrono::milliseconds(100))) {
+      silence.look(reader);
+      continue;
+    }
+    if (std::puts(line(value, options.json).c_str()) < 0 || std::fflush(stdout) != 0) return false;
+    silence.printed();
+    ++lines;
+  }
+  const std::uint64_t dropped = reader.status().dropped;
+  if (dropped > 0) {
+    std::fprintf(stderr, "nadir-listen: %llu dropped, the output was too slow\n",
+                 static_cast<unsigned long long>(dropped));
+  }
+  return true;
+}
+
+void describe_options(CLI::App* app, Options* options) {
+  ReaderOptions& reader = options->reader;
+  app->set_version_flag("--version", "nadir-listen " NADIR_VERSION);
+  app->footer("Example: nadir-listen --domain 0 --robot 3 --json --count 100");
+  app->add_option("--domain", reader.wire.domain, "DDS domain")
+      ->check(CLI::Range(0U, nadir::tracker::kMaxDomain))
+      ->capture_default_str();
+  app->add_option("--partition", reader.wire.partition, "DDS partition");
+  auto* robot = app->add_option("--robot", reader.filter.robot, "only the robot with this id");
+  auto* team = app->add_option("--team", reader.filter.team, "only robots of this team");
+  app->add_option("--camera", reader.filter.camera, "only what this camera sees");
+  app->add_flag("--json", options->json, "JSON lines instead of columns");
+  app->add_flag("--frames", options->frames, "whole frames, also empty ones, instead of poses")
+      ->excludes(robot)
+      ->excludes(team);
+  app->add_option("--count", options->count, "end after this many lines")
+      ->check(CLI::PositiveNumber);
+}
+
+void stop_on_interrupt() {
+  const auto stop = [](int) { stop_requested = 1; };
+  std::signal(SIGINT, stop);
+  std::signal(SIGTERM, stop);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Prints poses as they are published: pose, 1-sigma, covariance and age.",
+               "nadir-listen");
+  describe_options(&app, &options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  stop_on_interrupt();
+  try {
+    if (!options.json) {
+      const std::string header = options.frames ? nadir::tracker::frame_columns_header()
+                                                : nadir::tracker::pose_columns_header();
+      std::fprintf(stderr, "%s\n", header.c_str());
+    }
+    const bool done = options.frames ? listen<FrameReader, WireFrame>(options)
+                                     : listen<PoseReader, WirePose>(options);
+    return done ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "nadir-listen: %s\n", error.what());
+    return 1;
+  }
+}

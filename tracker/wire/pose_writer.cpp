@@ -1,0 +1,113 @@
+#include "tracker/wire/pose_writer.h"
+
+#include <string>
+
+#include "tracker/wire/dds_entities.h"
+#include "tracker/wire/instance_ledger.h"
+#include "tracker/wire/pose_codec.h"
+#include "tracker/wire/topics.h"
+#include "tracker/wire/wire_qos.h"
+
+namespace nadir::tracker {
+namespace {
+
+template <typename Clock>
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
+      .count();
+}
+
+DdsEntity make_writer(const DdsEntity& participant, const DdsEntity& topic, const DdsQos& qos,
+                      const char* name) {
+  return {dds_create_writer(participant.handle(), topic.handle(), qos.get(), nullptr),
+          std::string("cannot write the DDS topic ") + name};
+}
+
+int matched_readers(const DdsEntity& writer) {
+  dds_publication_matched_status_t matched{};
+  return dds_get_publication_matched_status(writer.handle(), &matched) == DDS_RETCODE_OK
+             ? static_cast<int>(matched.current_count)
+             : 0;
+}
+
+}  // namespace
+
+struct PoseWriter::State {
+  explicit State(const WireOptions& options)
+      : participant(make_participant(options)),
+        pose_topic(make_topic(participant, nadir_wire_RobotPose_desc, kRobotPoseTopic)),
+        frame_topic(make_topic(participant, nadir_wire_FrameSummary_desc, kFrameTopic)),
+        pose_writer(make_writer(participant, pose_topic, pose_qos(options), kRobotPoseTopic)),
+        frame_writer(make_writer(participant, frame_topic, frame_qos(options), kFrameTopic)) {
+    frame_robots.reserve(kMaxRobotsInFrame);
+  }
+
+  void count(dds_return_t written, std::uint64_t* published) {
+    ++(written == DDS_RETCODE_OK ? *published : counters.failed);
+  }
+
+  void retire_unseen(std::int64_t before_ns);
+
+  DdsEntity participant;
+  DdsEntity pose_topic;
+  DdsEntity frame_topic;
+  DdsEntity pose_writer;
+  DdsEntity frame_writer;
+  InstanceLedger ledger;
+  std::vector<nadir_wire_FrameRobot> frame_robots;
+  Status counters;
+};
+
+void PoseWriter::State::retire_unseen(std::int64_t before_ns) {
+  ledger.retire_older(before_ns, [this](const InstanceLedger::Instance& instance) {
+    WirePose key;
+    key.robot.team = instance.team;
+    key.robot.robot = instance.robot;
+    key.camera = instance.camera;
+    nadir_wire_RobotPose sample{};
+    if (encode(key, &sample)) dds_unregister_instance(pose_writer.handle(), &sample);
+  });
+}
+
+PoseWriter::PoseWriter(const WireOptions& options) : state_(std::make_unique<State>(options)) {}
+PoseWriter::PoseWriter(PoseWriter&&) noexcept = default;
+PoseWriter& PoseWriter::operator=(PoseWriter&&) noexcept = default;
+PoseWriter::~PoseWriter() = default;
+
+void PoseWriter::publish(std::span<const WirePose> poses) {
+  const std::int64_t publish_ns = now_ns<std::chrono::system_clock>();
+  const std::int64_t steady_ns = now_ns<std::chrono::steady_clock>();
+  for (const WirePose& pose : poses) {
+    nadir_wire_RobotPose sample{};
+    if (!encode(pose, &sample)) {
+      ++state_->counters.refused;
+      continue;
+    }
+    sample.publish_ns = publish_ns;
+    state_->count(dds_write(state_->pose_writer.handle(), &sample),
+                  &state_->counters.published_poses);
+    state_->ledger.touch(pose, steady_ns);
+  }
+  constexpr std::chrono::nanoseconds kRetirement = kInstanceRetirement;
+  state_->retire_unseen(steady_ns - kRetirement.count());
+}
+
+void PoseWriter::publish(const WireFrame& frame) {
+  nadir_wire_FrameSummary sample{};
+  if (!encode(frame, &state_->frame_robots, &sample)) {
+    ++state_->counters.refused;
+    return;
+  }
+  sample.publish_ns = now_ns<std::chrono::system_clock>();
+  state_->count(dds_write(state_->frame_writer.handle(), &sample),
+                &state_->counters.published_frames);
+}
+
+PoseWriter::Status PoseWriter::status() const {
+  Status status = state_->counters;
+  status.matched_pose_readers = matched_readers(state_->pose_writer);
+  status.matched_frame_readers = matched_readers(state_->frame_writer);
+  return status;
+}
+
+}  // namespace nadir::tracker
