@@ -8,11 +8,13 @@
 
 namespace nadir::vision {
 
-/// A comma separated file with one header line. Lines that are empty or start with '#' do not count.
+/// A comma separated file with one header line. Lines that are empty or start with '#' do not
+/// count.
 class CsvTable {
  public:
-  /// Reads the file; the header must hold every name of `columns` (in any order; further columns are allowed and
-  /// left out). Throws InputError with file:line:column on a missing file, an absent column or a short row.
+  /// Reads the file; the header must hold every name of `columns` (in any order; further columns
+  /// are allowed and left out). Throws InputError with file:line:column on a missing file, an
+  /// absent column or a short row.
   static CsvTable load(const std::filesystem::path& file, const std::vector<std::string>& columns);
 
   std::size_t rows() const { return lines_.size(); }

@@ -21,16 +21,17 @@ struct ValidRange {
   double high = std::numeric_limits<double>::infinity();
 };
 
-/// One mapping of a YAML file, read strictly: every key must be asked for once, every value must have the right
-/// type and lie in its range. Anything else throws InputError with file:line:column and the nearest known key.
+/// One mapping of a YAML file, read strictly: every key must be asked for once, every value must
+/// have the right type and lie in its range. Anything else throws InputError with file:line:column
+/// and the nearest known key.
 ///
 ///     YamlMap map = YamlMap::load("robot.yaml");
 ///     const double height_m = map.number("height_m", {0.0, 1.0});
 ///     map.finish();   // throws on a key that nobody asked for
 class YamlMap {
  public:
-  /// Reads a file. Throws InputError if it is missing, is not YAML, is not a mapping or has a key twice
-  /// (at any depth).
+  /// Reads a file. Throws InputError if it is missing, is not YAML, is not a mapping or has a key
+  /// twice (at any depth).
   static YamlMap load(const std::filesystem::path& file);
   /// The same from memory; `file_name` is for messages.
   static YamlMap parse(const std::string& text, const std::string& file_name);
