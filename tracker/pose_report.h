@@ -13,14 +13,14 @@ namespace nadir::tracker {
 
 /// One robot in one frame: what the frame says of it, not smoothed.
 struct RobotReport {
-  int id = 0;                 ///< robot number, or the track number of an anonymous robot
-  std::string_view team;      ///< the layout's team name; lives as long as the pipeline
+  int id = 0;             ///< robot number, or the track number of an anonymous robot
+  std::string_view team;  ///< the layout's team name; lives as long as the pipeline
   fusion::PlanarPose pose_world_robot;
   fusion::PoseCovariance covariance = fusion::PoseCovariance::Zero();
   vision::PixelPoint centre_px = vision::PixelPoint::Zero();  ///< image of the robot's origin
-  std::array<int, vision::kMaxDiscs> pixels{};  ///< pixels seen of each marker
+  std::array<int, vision::kMaxDiscs> pixels{};                ///< pixels seen of each marker
   int marker_count = 0;
-  double confidence = 0.0;    ///< 0 to 1
+  double confidence = 0.0;  ///< 0 to 1
 };
 
 struct RejectionReport {
@@ -28,7 +28,8 @@ struct RejectionReport {
   const char* reason = "";
 };
 
-/// Time spent on one frame, microseconds on the steady clock. total = detect + map + all up to the finished pose.
+/// Time spent on one frame, microseconds on the steady clock. total = detect + map + all up to the
+/// finished pose.
 struct StageTimes {
   double read_us = 0.0;
   double detect_us = 0.0;
@@ -36,7 +37,8 @@ struct StageTimes {
   double total_us = 0.0;
 };
 
-/// Everything that is known after one frame, also where no robot is seen. Vectors keep their memory.
+/// Everything that is known after one frame, also where no robot is seen. Vectors keep their
+/// memory.
 struct FrameReport {
   std::uint64_t frame = 0;
   std::string camera;

@@ -1,0 +1,51 @@
+#include "tracker/pose_from_markers.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <span>
+
+#include "tracker/rigid_fit.h"
+
+namespace nadir::tracker {
+namespace {
+
+// Where the image shows a place that is a few pixels at most from `near_px`: two Newton steps, as
+// the map is all but linear over a robot. Exact to far below 0.01 px.
+vision::PixelPoint pixel_near(const calibration::PlaneMap& map, const Eigen::Vector2d& place_m,
+                              const vision::PixelPoint& near_px) {
+  vision::PixelPoint pixel = near_px;
+  for (int step = 0; step < 2; ++step) {
+    const Eigen::Vector2d missing_m = place_m - map.plane_from_pixel(pixel);
+    pixel += map.jacobian_m_per_px(pixel).inverse() * missing_m;
+  }
+  return pixel;
+}
+
+}  // namespace
+
+MarkerPose pose_from_markers(const vision::RobotObservation& observation,
+                             const vision::MarkerLayout& layout, const calibration::PlaneMap& map,
+                             const DiscCovariances& covariances_px2) {
+  std::array<PlaneMarker, vision::kMaxDiscs> markers;
+  const auto count = static_cast<std::size_t>(observation.disc_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const vision::PixelPoint& pixel = observation.discs[i].centre_px;
+    const Eigen::Matrix2d jacobian = map.jacobian_m_per_px(pixel);
+    markers[i].position_world_m = map.plane_from_pixel(pixel);
+    markers[i].covariance_m2 = jacobian * covariances_px2[i] * jacobian.transpose();
+    // Disc 0 is the centre disc, at the robot's origin.
+    if (i > 0) markers[i].position_robot_m = layout.outer[i - 1].position_robot_m;
+  }
+  const RigidFit fit = fit_rigid_pose(std::span(markers.data(), count));
+
+  MarkerPose result;
+  result.pose_world_robot = fit.pose_world_robot;
+  result.chi_square_per_dof = fit.chi_square / fit.degrees_of_freedom;
+  result.covariance = fit.covariance * std::max(1.0, result.chi_square_per_dof);
+  result.centre_px =
+      pixel_near(map, fit.pose_world_robot.position_m(), observation.discs[0].centre_px);
+  result.covariance.topLeftCorner<2, 2>() += map.calibration_covariance_m2(result.centre_px);
+  return result;
+}
+
+}  // namespace nadir::tracker
