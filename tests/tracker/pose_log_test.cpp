@@ -27,7 +27,7 @@ FrameReport one_robot() {
   robot.team = "blue";
   robot.pose_world_robot = {0.123456789, -2.0, -3.0000000004};
   robot.covariance << 1.23456789e-7, -4.5e-9, 1e-6, -4.5e-9, 2e-7, 0.0, 1e-6, 0.0, 3.3333333333e-5;
-  robot.centre_px = {320.12345, 240.0};
+  robot.centre_px = {320.12344, 240.0};
   robot.pixels = {55, 48};
   robot.marker_count = 2;
   robot.confidence = 0.98;
@@ -58,7 +58,7 @@ TEST(PoseLog, WritesEveryFieldOfAFrame) {
   EXPECT_EQ(robot["team"], "blue");
   EXPECT_NEAR(robot["x_m"].get<double>(), 0.123456789, 1e-12);
   EXPECT_NEAR(robot["heading_rad"].get<double>(), -3.0, 1e-9);
-  EXPECT_NEAR(robot["u_px"].get<double>(), 320.1235, 1e-9);
+  EXPECT_NEAR(robot["u_px"].get<double>(), 320.1234, 1e-9);
   EXPECT_EQ(robot["pixels"], (json{55, 48}));
   EXPECT_EQ(frame["rejected"],
             (json{{{"u_px", 1.0}, {"v_px", 2.0}, {"reason", "no heading marker"}}}));

@@ -1,0 +1,232 @@
+#include "tracker/overlay.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace nadir::tracker {
+namespace {
+
+constexpr int kSmallWidth_px = 1000;
+constexpr double kPi = 3.14159265358979323846;
+constexpr int kSubPixelBits = 4;
+constexpr std::size_t kMostReasonsWritten = 24;
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+const cv::Scalar kShade(24, 24, 24);
+const cv::Scalar kWhite(255, 255, 255);
+const cv::Scalar kRejected(120, 120, 255);
+const cv::Scalar kUncertainty(255, 255, 255);
+
+// Brighter than the markers themselves, so that lines stand out on them.
+cv::Scalar line_colour(vision::Colour colour) {
+  switch (colour) {
+    case vision::Colour::kBlue:
+      return {255, 170, 60};
+    case vision::Colour::kYellow:
+      return {60, 230, 255};
+    case vision::Colour::kPink:
+      return {200, 120, 255};
+    case vision::Colour::kGreen:
+      return {130, 240, 120};
+    case vision::Colour::kOrange:
+      return {60, 160, 255};
+    case vision::Colour::kWhite:
+      return {255, 255, 255};
+    case vision::Colour::kBlack:
+      return {190, 190, 190};
+  }
+  return kWhite;
+}
+
+cv::Point fixed_point(const cv::Point2d& place) {
+  constexpr double kOne = 1 << kSubPixelBits;
+  return {static_cast<int>(std::lround(place.x * kOne)),
+          static_cast<int>(std::lround(place.y * kOne))};
+}
+
+Eigen::Vector2d direction(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
+
+}  // namespace
+
+Overlay::Overlay(calibration::PlaneMap map, const std::vector<vision::MarkerLayout>& layouts)
+    : map_(std::move(map)) {
+  for (const vision::MarkerLayout& layout : layouts) {
+    double radius_m = layout.centre_radius_m;
+    for (const vision::Disc& disc : layout.outer) {
+      radius_m = std::max(radius_m, disc.position_robot_m.norm() + disc.radius_m);
+    }
+    for (const vision::Team& team : layout.teams) {
+      styles_.push_back({team.name, line_colour(team.centre_colour), 1.08 * radius_m});
+    }
+  }
+}
+
+const Overlay::TeamStyle& Overlay::style_of(std::string_view team) const {
+  const auto style = std::ranges::find(styles_, team, &TeamStyle::name);
+  return style != styles_.end() ? *style : styles_.front();
+}
+
+const cv::Mat& Overlay::draw(const cv::Mat& bgr, const FrameReport& report) {
+  enlargement_ = bgr.cols < kSmallWidth_px ? 2 : 1;
+  if (enlargement_ > 1) {
+    cv::resize(bgr, canvas_, {}, enlargement_, enlargement_, cv::INTER_CUBIC);
+  } else {
+    bgr.copyTo(canvas_);
+  }
+  draw_rejections(report);
+  for (const RobotReport& robot : report.robots) draw_robot(robot);
+  draw_scale_bar();
+  draw_legend(report);
+  return canvas_;
+}
+
+cv::Point2d Overlay::on_canvas(const RobotReport& robot,
+                               const Eigen::Vector2d& offset_world_m) const {
+  const Eigen::Vector2d pixel =
+      robot.centre_px + map_.jacobian_m_per_px(robot.centre_px).inverse() * offset_world_m;
+  // Pixel centres are whole numbers in both pictures: (u + 1/2) scales, u does not.
+  return {(pixel.x() + 0.5) * enlargement_ - 0.5, (pixel.y() + 0.5) * enlargement_ - 0.5};
+}
+
+void Overlay::stroke(const std::vector<cv::Point2d>& line, const cv::Scalar& colour, int width,
+                     bool closed) {
+  std::vector<cv::Point> points;
+  points.reserve(line.size());
+  for (const cv::Point2d& point : line) points.push_back(fixed_point(point));
+  // A dark seam keeps the line readable on any ground.
+  cv::polylines(canvas_, points, closed, kShade, width + 2, cv::LINE_AA, kSubPixelBits);
+  cv::polylines(canvas_, points, closed, colour, width, cv::LINE_AA, kSubPixelBits);
+}
+
+void Overlay::write(const std::string& text, const cv::Point2d& place, double size,
+                    const cv::Scalar& colour) {
+  const cv::Point at(static_cast<int>(place.x), static_cast<int>(place.y));
+  cv::putText(canvas_, text, at, kFont, size, kShade, 3, cv::LINE_AA);
+  cv::putText(canvas_, text, at, kFont, size, colour, 1, cv::LINE_AA);
+}
+
+void Overlay::draw_robot(const RobotReport& robot) {
+  const TeamStyle& style = style_of(robot.team);
+  std::vector<cv::Point2d> outline;
+  for (int i = 0; i < 72; ++i) {
+    outline.push_back(on_canvas(robot, style.robot_radius_m * direction(2.0 * kPi * i / 72)));
+  }
+  stroke(outline, style.colour, 2, true);
+  draw_uncertainty(robot, style);
+
+  const double heading_rad = robot.pose_world_robot.heading_rad;
+  const Eigen::Vector2d front = direction(heading_rad);
+  const Eigen::Vector2d tip = 1.55 * style.robot_radius_m * front;
+  const double wing_m = 0.32 * style.robot_radius_m;
+  stroke({on_canvas(robot, Eigen::Vector2d::Zero()), on_canvas(robot, tip)}, style.colour, 2,
+         false);
+  stroke({on_canvas(robot, tip - wing_m * direction(heading_rad + 0.5)), on_canvas(robot, tip),
+          on_canvas(robot, tip - wing_m * direction(heading_rad - 0.5))},
+         style.colour, 2, false);
+  draw_number(robot, style);
+}
+
+void Overlay::draw_uncertainty(const RobotReport& robot, const TeamStyle& style) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(robot.covariance.topLeftCorner<2, 2>());
+  if (!robot.covariance.allFinite() || axes.eigenvalues().minCoeff() < 0.0) return;
+  const Eigen::Matrix2d half_axes_m =
+      kOverlaySigmaFactor * axes.eigenvectors() * axes.eigenvalues().cwiseSqrt().asDiagonal();
+  std::vector<cv::Point2d> ellipse;
+  for (int i = 0; i < 48; ++i) {
+    ellipse.push_back(on_canvas(robot, half_axes_m * direction(2.0 * kPi * i / 48)));
+  }
+  stroke(ellipse, kUncertainty, 1, true);
+
+  const double spread_rad =
+      std::min(kOverlaySigmaFactor * std::sqrt(robot.covariance(2, 2)), 0.5 * kPi);
+  std::vector<cv::Point2d> fan;
+  for (int i = -16; i <= 16; ++i) {
+    const double angle_rad = robot.pose_world_robot.heading_rad + spread_rad * i / 16.0;
+    fan.push_back(on_canvas(robot, 1.25 * style.robot_radius_m * direction(angle_rad)));
+  }
+  stroke(fan, kUncertainty, 1, false);
+}
+
+// A plate in the team's colour, behind the robot where its arrow does not point.
+void Overlay::draw_number(const RobotReport& robot, const TeamStyle& style) {
+  const std::string text = fmt::format("{}", robot.id);
+  int baseline = 0;
+  const double size = 0.55;
+  const cv::Size extent = cv::getTextSize(text, kFont, size, 2, &baseline);
+  const Eigen::Vector2d back = -direction(robot.pose_world_robot.heading_rad);
+  const cv::Point2d rim = on_canvas(robot, style.robot_radius_m * back);
+  const cv::Point2d middle = on_canvas(robot, Eigen::Vector2d::Zero());
+  const cv::Point2d outward = (rim - middle) / std::max(1.0, cv::norm(rim - middle));
+  const double half_width = 0.5 * extent.width + 6.0;
+  const double half_height = 0.5 * extent.height + 5.0;
+  const cv::Point2d centre = rim + outward * (std::hypot(half_width, half_height) + 2.0);
+  const cv::Rect plate(static_cast<int>(centre.x - half_width),
+                       static_cast<int>(centre.y - half_height), static_cast<int>(2.0 * half_width),
+                       static_cast<int>(2.0 * half_height));
+  cv::rectangle(canvas_, plate, style.colour, cv::FILLED, cv::LINE_AA);
+  cv::rectangle(canvas_, plate, kShade, 1, cv::LINE_AA);
+  cv::putText(
+      canvas_, text,
+      {plate.x + (plate.width - extent.width) / 2, plate.y + (plate.height + extent.height) / 2},
+      kFont, size, kShade, 2, cv::LINE_AA);
+}
+
+void Overlay::draw_rejections(const FrameReport& report) {
+  for (std::size_t i = 0; i < report.rejected.size(); ++i) {
+    const RejectionReport& rejection = report.rejected[i];
+    const cv::Point2d at((rejection.centre_px.x() + 0.5) * enlargement_ - 0.5,
+                         (rejection.centre_px.y() + 0.5) * enlargement_ - 0.5);
+    constexpr double kArm_px = 4.0;
+    stroke({at - cv::Point2d(kArm_px, kArm_px), at + cv::Point2d(kArm_px, kArm_px)}, kRejected, 1,
+           false);
+    stroke({at - cv::Point2d(kArm_px, -kArm_px), at + cv::Point2d(kArm_px, -kArm_px)}, kRejected, 1,
+           false);
+    if (i < kMostReasonsWritten)
+      write(rejection.reason, at + cv::Point2d(8.0, 4.0), 0.36, kRejected);
+  }
+}
+
+void Overlay::draw_scale_bar() {
+  const Eigen::Vector2d middle(0.5 * canvas_.cols / enlargement_,
+                               0.5 * canvas_.rows / enlargement_);
+  const double m_per_px = map_.jacobian_m_per_px(middle).col(0).norm() / enlargement_;
+  double length_m = 1.0;
+  while (length_m / m_per_px > 0.25 * canvas_.cols) length_m /= 2.0;
+  const double length_px = length_m / m_per_px;
+  const cv::Point2d right(canvas_.cols - 16.0, canvas_.rows - 16.0);
+  const cv::Point2d left = right - cv::Point2d(length_px, 0.0);
+  const cv::Point2d tick(0.0, 5.0);
+  stroke({left - tick, left, right, right - tick}, kWhite, 2, false);
+  write(fmt::format("{:g} m", length_m), left + cv::Point2d(0.0, -8.0), 0.45, kWhite);
+}
+
+void Overlay::draw_legend(const FrameReport& report) {
+  const std::array<std::string, 3> lines = {
+      fmt::format("{}   frame {}", report.camera, report.frame),
+      fmt::format("{} robots, {} rejected   {:.2f} ms", report.robots.size(),
+                  report.rejected.size(), 1e-3 * report.stages.total_us),
+      fmt::format("white: 1 sigma of place and heading, x {:g}", kOverlaySigmaFactor)};
+  constexpr double kSize = 0.5;
+  constexpr int kLine_px = 21;
+  int width = 0;
+  int baseline = 0;
+  for (const std::string& line : lines) {
+    width = std::max(width, cv::getTextSize(line, kFont, kSize, 1, &baseline).width);
+  }
+  const cv::Rect panel =
+      cv::Rect(8, 8, width + 20, kLine_px * static_cast<int>(lines.size()) + 12) &
+      cv::Rect(0, 0, canvas_.cols, canvas_.rows);
+  cv::Mat ground = canvas_(panel);
+  cv::addWeighted(ground, 0.3, cv::Mat(ground.size(), ground.type(), kShade), 0.7, 0.0, ground);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    cv::putText(canvas_, lines[i], {panel.x + 10, panel.y + kLine_px * static_cast<int>(i + 1) - 1},
+                kFont, kSize, kWhite, 1, cv::LINE_AA);
+  }
+}
+
+}  // namespace nadir::tracker
