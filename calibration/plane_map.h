@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "calibration/polynomial_map.h"
@@ -15,8 +16,9 @@ struct PlanePoint {
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
 };
 
-/// Pixels to metres on one plane, a value: cheap to copy, immutable. A new model is one more alternative of the
-/// variant and one more file; nobody else changes.
+/// Pixels to metres on one plane, a value: cheap to copy, immutable. A new model is one more
+/// alternative of the variant and one more file with plane_from_pixel, jacobian_m_per_px,
+/// calibration_covariance_m2 and centre_px; nobody else changes.
 class PlaneMap {
  public:
   using Model = std::variant<PolynomialMap>;
@@ -27,10 +29,12 @@ class PlaneMap {
   Eigen::Vector2d plane_from_pixel(const vision::PixelPoint& pixel) const;
   /// d(x_m, y_m)/d(u_px, v_px).
   Eigen::Matrix2d jacobian_m_per_px(const vision::PixelPoint& pixel) const;
-  /// Plane to pixel by Newton's method from the linear guess; nothing where it does not converge.
+  /// Plane to pixel by Newton's method from the linear guess, to 1e-9 m; nothing where it does not
+  /// converge, or only beyond a fold of the map (where the image would be mirrored).
   std::optional<vision::PixelPoint> pixel_from_plane(const Eigen::Vector2d& plane_m) const;
-  /// What the calibration itself adds to the error of a mapped point: the parameters' sampling error and the
-  /// model's lack of fit (theory 4.4).
+  /// What the calibration itself adds to the error of a mapped point: the parameters' sampling
+  /// error and the model's lack of fit (theory 4.4). It changes slowly over the image: near points
+  /// err alike.
   Eigen::Matrix2d calibration_covariance_m2(const vision::PixelPoint& pixel) const;
   /// Maps a pixel with its covariance: J C J^T + calibration_covariance_m2.
   PlanePoint map(const vision::PixelPoint& pixel, const Eigen::Matrix2d& covariance_px2) const;

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "vision/pixel.h"
+
+namespace nadir::calibration {
+
+/// One surveyed point: where it stands on its plane and where the image shows it.
+struct FieldPoint {
+  vision::PixelPoint pixel = vision::PixelPoint::Zero();
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  int line = 0;  ///< of the points file, from 1; 0 for a point that was not read from a file
+};
+
+/// The points of one plane and the file from which they come (empty if from none), which messages
+/// name.
+struct FieldPoints {
+  std::string file;
+  std::vector<FieldPoint> points;
+};
+
+/// Reads POINTS.csv: header u_px,v_px,x_m,y_m. Throws InputError on a missing file or column, a
+/// cell that is not a finite number, or no points at all.
+FieldPoints load_field_points(const std::filesystem::path& file);
+
+/// Smallest upright rectangle that holds the points, pixels.
+struct PixelBox {
+  vision::PixelPoint low_px = vision::PixelPoint::Zero();
+  vision::PixelPoint high_px = vision::PixelPoint::Zero();
+};
+
+/// The box of at least one point.
+PixelBox pixel_box(const FieldPoints& points);
+
+}  // namespace nadir::calibration

@@ -1,0 +1,89 @@
+#include "calibration/polynomial_map.h"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace nadir::calibration {
+namespace {
+
+/// 1, t, t^2, ... up to t^order.
+std::array<double, kMaxPolynomialOrder + 1> powers(double t, int order) {
+  std::array<double, kMaxPolynomialOrder + 1> power{};
+  power[0] = 1.0;
+  for (int k = 1; k <= order; ++k) power[k] = power[k - 1] * t;
+  return power;
+}
+
+/// dphi/d(u, v) of polynomial_basis: terms x 2.
+Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMaxPolynomialTerms, 2> basis_derivative(
+    const Eigen::Vector2d& normalised, int order) {
+  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMaxPolynomialTerms, 2> derivative(
+      polynomial_terms(order), 2);
+  const auto u = powers(normalised.x(), order);
+  const auto v = powers(normalised.y(), order);
+  int term = 0;
+  for (int degree = 0; degree <= order; ++degree) {
+    for (int k = 0; k <= degree; ++k, ++term) {
+      const int a = degree - k;  // the term is u^a v^k
+      derivative(term, 0) = a == 0 ? 0.0 : a * u[a - 1] * v[k];
+      derivative(term, 1) = k == 0 ? 0.0 : k * u[a] * v[k - 1];
+    }
+  }
+  return derivative;
+}
+
+void check(const PolynomialMap::Parameters& parameters) {
+  if (parameters.order < 1 || parameters.order > kMaxPolynomialOrder) {
+    throw std::invalid_argument("polynomial map: order out of range");
+  }
+  const int terms = polynomial_terms(parameters.order);
+  const auto& information = parameters.information_inverse;
+  if (parameters.coefficients_m.cols() != terms || information.rows() != terms ||
+      information.cols() != terms) {
+    throw std::invalid_argument("polynomial map: sizes do not belong to the order");
+  }
+  if (!(parameters.scale_px > 0.0) || !(parameters.residual_variance_m2 >= 0.0) ||
+      !(parameters.lack_of_fit_variance_m2 >= 0.0) || !parameters.coefficients_m.allFinite() ||
+      !information.allFinite() || !parameters.centre_px.allFinite()) {
+    throw std::invalid_argument("polynomial map: number out of range");
+  }
+}
+
+}  // namespace
+
+PolynomialBasis polynomial_basis(const Eigen::Vector2d& normalised, int order) {
+  PolynomialBasis basis(polynomial_terms(order));
+  const auto u = powers(normalised.x(), order);
+  const auto v = powers(normalised.y(), order);
+  int term = 0;
+  for (int degree = 0; degree <= order; ++degree) {
+    for (int k = 0; k <= degree; ++k) basis[term++] = u[degree - k] * v[k];
+  }
+  return basis;
+}
+
+PolynomialMap::PolynomialMap(const Parameters& parameters) : parameters_(parameters) {
+  check(parameters_);
+}
+
+Eigen::Vector2d PolynomialMap::plane_from_pixel(const vision::PixelPoint& pixel) const {
+  return parameters_.coefficients_m * polynomial_basis(normalised(pixel), parameters_.order);
+}
+
+Eigen::Matrix2d PolynomialMap::jacobian_m_per_px(const vision::PixelPoint& pixel) const {
+  return parameters_.coefficients_m * basis_derivative(normalised(pixel), parameters_.order) /
+         parameters_.scale_px;
+}
+
+double PolynomialMap::sampling_variance_m2(const vision::PixelPoint& pixel) const {
+  const PolynomialBasis phi = polynomial_basis(normalised(pixel), parameters_.order);
+  return parameters_.residual_variance_m2 * phi.dot(parameters_.information_inverse * phi);
+}
+
+Eigen::Matrix2d PolynomialMap::calibration_covariance_m2(const vision::PixelPoint& pixel) const {
+  return (sampling_variance_m2(pixel) + parameters_.lack_of_fit_variance_m2) *
+         Eigen::Matrix2d::Identity();
+}
+
+}  // namespace nadir::calibration

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "vision/pixel.h"
+
+namespace nadir::calibration {
+
+/// Highest order of a polynomial map; storage is sized for it, so maps never allocate.
+inline constexpr int kMaxPolynomialOrder = 5;
+
+/// Number of terms of a polynomial in two variables: 6 for order 2.
+constexpr int polynomial_terms(int order) { return (order + 1) * (order + 2) / 2; }
+inline constexpr int kMaxPolynomialTerms = polynomial_terms(kMaxPolynomialOrder);
+
+/// Vector of polynomial_terms(order) numbers.
+using PolynomialBasis = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxPolynomialTerms, 1>;
+/// 2 x terms: the row of x, the row of y.
+using PolynomialCoefficients = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kMaxPolynomialTerms>;
+/// terms x terms.
+using PolynomialInformation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                                            kMaxPolynomialTerms, kMaxPolynomialTerms>;
+
+/// phi(u, v) in the order of theory 4.4, by rising degree: 1, u, v, u^2, u v, v^2, ...
+/// `normalised` is a pixel in normalised coordinates, about -1 to 1.
+PolynomialBasis polynomial_basis(const Eigen::Vector2d& normalised, int order);
+
+/// Pixel to plane by a polynomial in both pixel coordinates (theory 4.4; Goncalves, Lima, Costa use
+/// order 2):
+///
+///     n   = (pixel - centre_px) / scale_px
+///     p   = coefficients_m phi(n)
+///     J   = coefficients_m dphi/dn / scale_px
+///     C   = residual_variance (phi^T M^-1 phi) I  +  lack_of_fit_variance I,   M = sum of phi
+///     phi^T
+///
+/// The first part of C is the sampling error of the coefficients. The second is the model's own
+/// error: what is left of a residual that the noise does not explain is systematic, and so it is an
+/// error of every published place.
+class PolynomialMap {
+ public:
+  struct Parameters {
+    int order = 2;  ///< 1 to kMaxPolynomialOrder
+    vision::PixelPoint centre_px = vision::PixelPoint::Zero();
+    double scale_px = 1.0;                      ///< above 0
+    PolynomialCoefficients coefficients_m;      ///< 2 x polynomial_terms(order)
+    PolynomialInformation information_inverse;  ///< M^-1, terms x terms, no unit
+    double residual_variance_m2 = 0.0;          ///< per axis
+    double lack_of_fit_variance_m2 = 0.0;       ///< per axis
+  };
+
+  /// Throws std::invalid_argument where sizes do not belong to the order, or a number is out of
+  /// range.
+  explicit PolynomialMap(const Parameters& parameters);
+
+  Eigen::Vector2d plane_from_pixel(const vision::PixelPoint& pixel) const;
+  /// d(x_m, y_m)/d(u_px, v_px), in closed form.
+  Eigen::Matrix2d jacobian_m_per_px(const vision::PixelPoint& pixel) const;
+  /// The sampling error alone: residual_variance phi^T M^-1 phi, m^2 per axis.
+  double sampling_variance_m2(const vision::PixelPoint& pixel) const;
+  Eigen::Matrix2d calibration_covariance_m2(const vision::PixelPoint& pixel) const;
+  /// Where a search for a pixel starts.
+  vision::PixelPoint centre_px() const { return parameters_.centre_px; }
+
+  const Parameters& parameters() const { return parameters_; }
+
+ private:
+  Eigen::Vector2d normalised(const vision::PixelPoint& pixel) const {
+    return (pixel - parameters_.centre_px) / parameters_.scale_px;
+  }
+
+  Parameters parameters_;
+};
+
+}  // namespace nadir::calibration
