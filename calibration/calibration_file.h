@@ -19,9 +19,9 @@ struct Calibration {
   double height_m = 0.0;   ///< of the points' plane above the field
   int image_width_px = 0;  ///< 0 with image_height_px 0: unknown
   int image_height_px = 0;
-  PixelBox points_box;  ///< of the points that were fitted
-  ResidualStatistics residuals;
-  StatedNoise noise;
+  PixelBox points_box{};  ///< of the points that were fitted
+  ResidualStatistics residuals{};
+  StatedNoise noise{};
 };
 
 /// The file's text.
