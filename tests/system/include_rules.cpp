@@ -94,13 +94,13 @@ std::optional<std::string> broken_library_rule(std::string_view file, std::strin
 }  // namespace
 
 std::vector<IncludeLine> include_lines(const std::string& text) {
-  static const std::regex kInclude(R"re(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)re");
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*([<"])([^>"]+)[>"])re");
   std::vector<IncludeLine> lines;
   std::istringstream stream(text);
   std::string line;
   std::smatch match;
   for (int number = 1; std::getline(stream, line); ++number) {
-    if (std::regex_match(line, match, kInclude)) {
+    if (std::regex_search(line, match, kInclude)) {
       lines.push_back({number, match[1] == "\"", match[2]});
     }
   }

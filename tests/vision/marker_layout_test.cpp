@@ -5,8 +5,8 @@
 
 #include <stdexcept>
 
-#include "input_error_line.h"
-#include "scratch_folder.h"
+#include "tests/vision/input_error_line.h"
+#include "tests/vision/scratch_folder.h"
 
 namespace nadir::vision {
 namespace {
