@@ -23,7 +23,8 @@ Eigen::Matrix3d camera_axes(const CameraParameters& camera) {
 
 /// Radius at which the distortion stops growing, infinity if never.
 double fold_radius(double k1, double k2) {
-  // d/dr of r (1 + k1 r^2 + k2 r^4) = 1 + 3 k1 q + 5 k2 q^2 with q = r^2: its smallest positive root.
+  // d/dr of r (1 + k1 r^2 + k2 r^4) = 1 + 3 k1 q + 5 k2 q^2 with q = r^2: its smallest positive
+  // root.
   const double infinity = std::numeric_limits<double>::infinity();
   if (k2 == 0.0) return k1 < 0.0 ? std::sqrt(-1.0 / (3.0 * k1)) : infinity;
   const double discriminant = 9.0 * k1 * k1 - 20.0 * k2;

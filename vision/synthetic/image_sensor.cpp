@@ -89,8 +89,9 @@ void ImageSensor::expose_row(const float* light, int width, int row, RandomStrea
   quantise(count, samples);
 }
 
-/// Variance in grey levels: each electron is `grey` levels, shot noise has as many electrons variance as charge.
-/// A noise number is the sum of two runs of the table at random places: nothing repeats visibly.
+/// Variance in grey levels: each electron is `grey` levels, shot noise has as many electrons
+/// variance as charge. A noise number is the sum of two runs of the table at random places: nothing
+/// repeats visibly.
 void ImageSensor::add_noise(int count, RandomStream& random) {
   const float* table = normal_table().data();
   const auto grey = static_cast<float>(255.0 / sensor_.full_well_electrons);
@@ -127,7 +128,8 @@ void ImageSensor::quantise(int count, std::uint8_t* samples) const {
 
 void ImageSensor::demosaic(const cv::Mat& samples, cv::Mat& bgr) const {
   cv::cvtColor(samples, bgr, opencv_code(sensor_.mosaic));
-  // cvtColor copies its neighbours into the outermost pixels: average what there is of each channel instead.
+  // cvtColor copies its neighbours into the outermost pixels: average what there is of each channel
+  // instead.
   const auto repair = [&](int u, int v) {
     int sum[3] = {0, 0, 0};
     int count[3] = {0, 0, 0};

@@ -10,14 +10,16 @@
 
 namespace nadir::vision {
 
-/// Turns light on the pixels into a digital picture: colour mosaic, shot and read noise in electrons, full well,
-/// gamma, 8 bits, and the mosaic's bilinear interpolation, which keeps the native samples as they are.
+/// Turns light on the pixels into a digital picture: colour mosaic, shot and read noise in
+/// electrons, full well, gamma, 8 bits, and the mosaic's bilinear interpolation, which keeps the
+/// native samples as they are.
 class ImageSensor {
  public:
   explicit ImageSensor(const SceneSensor& sensor);
 
   /// Light without noise to digital samples of one row.
-  /// `light`: 3 * `width` linear grey levels, blue green red; `samples`: with a mosaic `width` bytes, else 3 * `width`.
+  /// `light`: 3 * `width` linear grey levels, blue green red; `samples`: with a mosaic `width`
+  /// bytes, else 3 * `width`.
   void expose_row(const float* light, int width, int row, RandomStream& random,
                   std::uint8_t* samples);
   bool has_mosaic() const { return sensor_.mosaic != SceneSensor::Mosaic::kNone; }

@@ -6,9 +6,10 @@
 
 namespace nadir::vision {
 
-/// The inverse of a camera on a plane over a small rectangle of the image, as a polynomial of order 4 in u and in
-/// v through 25 exact points: cheap to evaluate along a row, and within 1e-3 px of the exact map over rectangles of
-/// some 100 px even for wide lenses (cubic distortion is met exactly up to its square).
+/// The inverse of a camera on a plane over a small rectangle of the image, as a polynomial of order
+/// 4 in u and in v through 25 exact points: cheap to evaluate along a row, and within 1e-3 px of
+/// the exact map over rectangles of some 100 px even for wide lenses (cubic distortion is met
+/// exactly up to its square).
 class LocalPlaneMap {
  public:
   /// Coefficients of t^0 to t^4 of the plane's x and y along one image row.
@@ -27,7 +28,8 @@ class LocalPlaneMap {
  private:
   PixelPoint centre_px_;
   PixelPoint half_px_;
-  Eigen::Matrix<double, 5, 5> coefficients_[2];  ///< of x and y: powers of t down, powers of v across
+  Eigen::Matrix<double, 5, 5>
+      coefficients_[2];  ///< of x and y: powers of t down, powers of v across
 };
 
 }  // namespace nadir::vision

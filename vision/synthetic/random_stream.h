@@ -7,7 +7,8 @@
 namespace nadir::vision {
 
 /// Random numbers that are the same on every machine (SplitMix64; Steele, Lea, Flood 2014).
-/// A stream is named by numbers (seed, frame, purpose), so any frame can be made without those before it.
+/// A stream is named by numbers (seed, frame, purpose), so any frame can be made without those
+/// before it.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed, std::uint64_t frame = 0, std::uint64_t purpose = 0)

@@ -34,7 +34,8 @@ Eigen::Vector2d on_polyline(const RobotPath& path, double way_m) {
   return path.corners_m.back();
 }
 
-/// A closed path is looked along from 5 cm behind to 5 cm ahead; on an open one the robot drives backwards back.
+/// A closed path is looked along from 5 cm behind to 5 cm ahead; on an open one the robot drives
+/// backwards back.
 double direction_on_polyline(const RobotPath& path, double way_m) {
   Eigen::Vector2d chord;
   if (path.closed) {

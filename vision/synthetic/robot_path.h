@@ -22,14 +22,14 @@ struct RobotPath {
   Kind kind = Kind::kStatic;
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();  ///< static: the place; circle: its centre
   double radius_m = 0.0;
-  double start_angle_rad = 0.0;               ///< on the circle
-  std::vector<Eigen::Vector2d> corners_m;     ///< polyline: at least two, no two neighbours equal
-  bool closed = false;                        ///< polyline: drive round; else to and fro
-  double speed_mps = 0.0;                     ///< circle: negative is clockwise
-  double start_m = 0.0;                       ///< polyline: way already driven at time 0
-  bool faces_travel = false;                  ///< heading turns with the path (rounded 5 cm about corners)
-  double heading_rad = 0.0;                   ///< added to the direction of travel, or the heading itself
-  double spin_radps = 0.0;                    ///< added turn, if it does not face its travel
+  double start_angle_rad = 0.0;            ///< on the circle
+  std::vector<Eigen::Vector2d> corners_m;  ///< polyline: at least two, no two neighbours equal
+  bool closed = false;                     ///< polyline: drive round; else to and fro
+  double speed_mps = 0.0;                  ///< circle: negative is clockwise
+  double start_m = 0.0;                    ///< polyline: way already driven at time 0
+  bool faces_travel = false;  ///< heading turns with the path (rounded 5 cm about corners)
+  double heading_rad = 0.0;   ///< added to the direction of travel, or the heading itself
+  double spin_radps = 0.0;    ///< added turn, if it does not face its travel
 
   /// Pose and velocity `time_s` after the scene's start.
   RobotMotion at(double time_s) const;

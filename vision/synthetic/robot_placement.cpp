@@ -72,7 +72,8 @@ void add_random_robots(const Scene& scene, const CameraModel& camera, const Rand
   const MarkerLayout& layout = scene.layouts.at(wish.layout);
   NameDraw names(layout, wish);
   for (int i = 0; i < wish.count; ++i) {
-    RobotPlacement robot{.layout = wish.layout};
+    RobotPlacement robot;
+    robot.layout = wish.layout;
     std::tie(robot.team, robot.id) = names.draw(random);
     robot.motion.heading_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
     bool placed = false;
@@ -120,11 +121,11 @@ std::vector<ClutterDisc> random_clutter_in_frame(const Scene& scene, const Camer
     for (int attempt = 0; attempt < kTriesPerRobot; ++attempt) {
       const Eigen::Vector2d place_m = random_place(camera, clutter.random_radius_m, random);
       if (!clear_of(robots, place_m, reach_m)) continue;
-      discs.push_back({.place_m = place_m,
-                       .radius_m = clutter.random_radius_m,
-                       .height_m = clutter.random_radius_m,
-                       .colour = clutter.random_colours.at(
-                           random.below(clutter.random_colours.size()))});
+      discs.push_back(
+          {.place_m = place_m,
+           .radius_m = clutter.random_radius_m,
+           .height_m = clutter.random_radius_m,
+           .colour = clutter.random_colours.at(random.below(clutter.random_colours.size()))});
       break;
     }
   }
@@ -136,8 +137,7 @@ std::vector<RobotTruth> truth_of(const Scene& scene, const CameraModel& camera,
   std::vector<RobotTruth> truth;
   for (const RobotPlacement& robot : robots) {
     const MarkerLayout& layout = scene.layouts.at(robot.layout);
-    const PixelPoint pixel =
-        camera.project({robot.motion.x_m, robot.motion.y_m, layout.height_m});
+    const PixelPoint pixel = camera.project({robot.motion.x_m, robot.motion.y_m, layout.height_m});
     if (!camera.sees(pixel, -0.5)) continue;
     truth.push_back({robot.id, layout.teams.at(robot.team).name, robot.layout, robot.motion.x_m,
                      robot.motion.y_m, robot.motion.heading_rad, pixel.x(), pixel.y()});

@@ -35,19 +35,21 @@ struct SceneSensor {
 struct SceneShadow {
   double u_px = 640.0;  ///< a point of the edge
   double v_px = 512.0;
-  double angle_rad = 1.0;  ///< direction of the edge from the u axis towards v; the shadow is on its right (u, v)
+  double angle_rad =
+      1.0;  ///< direction of the edge from the u axis towards v; the shadow is on its right (u, v)
   double factor = 0.5;       ///< light left in the shadow
   double softness_px = 2.0;  ///< RMS width of the transition
   bool random = false;       ///< another edge through the image's middle half in each frame
 };
 
 struct SceneLight {
-  double level = 1.0;               ///< 1: white paper has grey level `white_grey`
+  double level = 1.0;  ///< 1: white paper has grey level `white_grey`
   double white_grey = 240.0;
-  Reflectance colour = {1, 1, 1};   ///< gain of blue, green, red
-  double vignette = 0.0;            ///< share of light lost in the image's corners
-  double gradient_u = 0.0;          ///< light at the right border minus light at the left, share of the middle's
-  double gradient_v = 0.0;          ///< bottom minus top
+  Reflectance colour = {1, 1, 1};  ///< gain of blue, green, red
+  double vignette = 0.0;           ///< share of light lost in the image's corners
+  double gradient_u =
+      0.0;  ///< light at the right border minus light at the left, share of the middle's
+  double gradient_v = 0.0;  ///< bottom minus top
   std::optional<SceneShadow> shadow;
 };
 
@@ -100,8 +102,8 @@ struct RandomRobots {
   std::size_t layout = 0;
   std::vector<std::size_t> teams;  ///< no two robots have the same team and id
   int count = 0;
-  double border_margin_px = 4.0;     ///< between a robot's rim and the image's border
-  double minimum_distance_m = 0.2;   ///< between the centres of any two robots
+  double border_margin_px = 4.0;    ///< between a robot's rim and the image's border
+  double minimum_distance_m = 0.2;  ///< between the centres of any two robots
   bool redraw_every_frame = true;
 };
 
@@ -114,12 +116,13 @@ struct ScenePoints {
   double survey_noise_m = 0.0;
 };
 
-/// Everything that the synthetic camera shows. Filled by load_scene or in code; a default scene is an empty carpet.
+/// Everything that the synthetic camera shows. Filled by load_scene or in code; a default scene is
+/// an empty carpet.
 struct Scene {
   CameraParameters camera;
   double rate_hz = 60.0;
-  std::uint64_t frames = 0;       ///< of a source; 0: endless
-  double point_spread_px = 0.7;   ///< RMS radius per axis of the optics' Gaussian blur
+  std::uint64_t frames = 0;      ///< of a source; 0: endless
+  double point_spread_px = 0.7;  ///< RMS radius per axis of the optics' Gaussian blur
   SceneSensor sensor;
   SceneLight light;
   SceneFloor floor;
@@ -131,10 +134,12 @@ struct Scene {
   ScenePoints points;
 };
 
-/// The body that suits a layout: its outermost mark plus 15 mm; the league's is 90 mm with a front flat at 70 mm.
+/// The body that suits a layout: 5 mm more than its outermost mark, cut 10 mm before its foremost.
+/// For the league's pattern that is a radius of 90 mm and a front flat at 65 mm.
 RobotBody default_body(const MarkerLayout& layout);
 
-/// Reads a scene. Layout files are named relative to the scene's. Throws InputError with file:line:column.
+/// Reads a scene. Layout files are named relative to the scene's. Throws InputError with
+/// file:line:column.
 Scene load_scene(const std::filesystem::path& file);
 
 }  // namespace nadir::vision

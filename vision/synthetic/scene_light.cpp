@@ -32,8 +32,7 @@ ShadowEdge::ShadowEdge(const SceneShadow& shadow, double extra_blur_px)
       normal_u_(std::sin(shadow.angle_rad)),
       normal_v_(-std::cos(shadow.angle_rad)),
       factor_(shadow.factor) {
-  const double sigma_px =
-      std::max(std::hypot(shadow.softness_px, extra_blur_px), kSharpestEdge_px);
+  const double sigma_px = std::max(std::hypot(shadow.softness_px, extra_blur_px), kSharpestEdge_px);
   reach_px_ = kReachInSigmas * sigma_px;
   profile_.resize(kProfileSteps + 2);
   for (int i = 0; i < kProfileSteps + 2; ++i) {

@@ -16,9 +16,9 @@ class LightField {
   cv::Vec3f grey_levels(double u_px, double v_px) const {
     const double u = (u_px - centre_u_px_) * per_half_diagonal_;
     const double v = (v_px - centre_v_px_) * per_half_diagonal_;
-    const double share = (1.0 - vignette_ * (u * u + v * v)) *
-                         (1.0 + gradient_u_ * (u_px - centre_u_px_) +
-                          gradient_v_ * (v_px - centre_v_px_));
+    const double share =
+        (1.0 - vignette_ * (u * u + v * v)) *
+        (1.0 + gradient_u_ * (u_px - centre_u_px_) + gradient_v_ * (v_px - centre_v_px_));
     return peak_ * static_cast<float>(share > 0.0 ? share : 0.0);
   }
 

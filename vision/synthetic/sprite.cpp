@@ -1,5 +1,6 @@
 #include "vision/synthetic/sprite.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,7 +16,8 @@ constexpr double kSharpOptics_px = 0.35;
 
 double normal_share(double sigmas) { return 0.5 * std::erfc(-sigmas / std::numbers::sqrt2); }
 
-/// Weight of a fine sample `offset_px` from a pixel's centre: the point spread integrated over the pixel.
+/// Weight of a fine sample `offset_px` from a pixel's centre: the point spread integrated over the
+/// pixel.
 double pixel_weight(double offset_px, double point_spread_px) {
   if (point_spread_px <= 0.0) return std::abs(offset_px) < 0.5 ? 1.0 : 0.0;
   return normal_share((offset_px + 0.5) / point_spread_px) -
@@ -82,8 +84,7 @@ cv::Rect SpritePainter::region_of(const Sprite& sprite) const {
 
 int SpritePainter::instants_of(const Sprite& sprite) const {
   const RobotMotion& motion = sprite.motion;
-  const Eigen::Matrix2d scale =
-      camera_.pixels_per_metre({motion.x_m, motion.y_m, sprite.height_m});
+  const Eigen::Matrix2d scale = camera_.pixels_per_metre({motion.x_m, motion.y_m, sprite.height_m});
   const double speed_mps = std::hypot(motion.velocity_x_mps, motion.velocity_y_mps) +
                            std::abs(motion.heading_rate_radps) * sprite.extent_m();
   const double travel_px = scale.norm() * speed_mps * exposure_s_;
@@ -166,8 +167,8 @@ void SpritePainter::paint_fine_row(const Sprite& sprite, const LocalPlaneMap& ma
                                    double v_px) {
   const LocalPlaneMap::RowPolynomial world = map.row(v_px);
   const auto first_t = static_cast<float>(map.t(fine_origin_u_px_));
-  const auto step_t = static_cast<float>(map.t(fine_origin_u_px_ + 1.0 / fineness_) -
-                                         map.t(fine_origin_u_px_));
+  const auto step_t =
+      static_cast<float>(map.t(fine_origin_u_px_ + 1.0 / fineness_) - map.t(fine_origin_u_px_));
   Eigen::Array4f* out = &fine_[static_cast<std::size_t>(row) * fine_columns_];
   std::fill(out, out + fine_columns_, Eigen::Array4f::Zero());
   const auto weight = 1.0F / static_cast<float>(instants_.size());
@@ -196,8 +197,8 @@ void SpritePainter::paint_layer(const Sprite& sprite, const Instant& instant, co
   const int begin = std::clamp(static_cast<int>(layer.column - half), 0, fine_columns_);
   const int end = std::clamp(static_cast<int>(layer.column + half) + 1, begin, fine_columns_);
   const Sprite::Disc* disc = layer.disc;
-  const Eigen::Vector2f centre = disc != nullptr ? disc->position_m.cast<float>().eval()
-                                                 : Eigen::Vector2f::Zero().eval();
+  const Eigen::Vector2f centre =
+      disc != nullptr ? disc->position_m.cast<float>().eval() : Eigen::Vector2f::Zero().eval();
   const auto radius = static_cast<float>(disc != nullptr ? disc->radius_m : sprite.body->radius_m);
   // A disc has no flat front: put it where it never cuts.
   const auto front = static_cast<float>(disc != nullptr ? 1e3 : sprite.body->front_m);

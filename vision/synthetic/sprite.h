@@ -19,7 +19,8 @@ struct Sprite {
     Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< in the sprite's own frame
     double radius_m = 0.0;
     Reflectance colour = {1, 1, 1};
-    double shading = 0.0;  ///< share of light lost at the rim, growing with the square of the radius
+    double shading =
+        0.0;  ///< share of light lost at the rim, growing with the square of the radius
   };
 
   double height_m = 0.0;
@@ -31,15 +32,16 @@ struct Sprite {
   double extent_m() const;
 };
 
-/// A painted sprite as the optics shows it: reflectance times shadow, blurred and integrated over the pixels.
+/// A painted sprite as the optics shows it: reflectance times shadow, blurred and integrated over
+/// the pixels.
 struct SpritePatch {
-  cv::Rect region_px;  ///< part of the image; may be empty
+  cv::Rect region_px;     ///< part of the image; may be empty
   cv::Mat premultiplied;  ///< CV_32FC4 of that size: blue, green, red times coverage, then coverage
 };
 
-/// Paints sprites. Edges are drawn by their signed distance on a grid 4 or 8 times finer than the pixels, then
-/// convolved with the exact pixel-integrated point spread, so that the paint's own centroid error is below 0.003 px.
-/// Reuses its memory; one per thread.
+/// Paints sprites. Edges are drawn by their signed distance on a grid 4 or 8 times finer than the
+/// pixels, then convolved with the exact pixel-integrated point spread, so that the paint's own
+/// centroid error is below 0.003 px. Reuses its memory; one per thread.
 class SpritePainter {
  public:
   SpritePainter(const CameraModel& camera, double point_spread_px, double exposure_s);
@@ -76,8 +78,8 @@ class SpritePainter {
   CameraModel camera_;
   double point_spread_px_;
   double exposure_s_;
-  int margin_px_;        ///< of the point spread around a pixel
-  int fineness_ = 0;     ///< fine columns per pixel
+  int margin_px_;     ///< of the point spread around a pixel
+  int fineness_ = 0;  ///< fine columns per pixel
   int fine_columns_ = 0;
   int fine_rows_ = 0;
   double fine_origin_u_px_ = 0.0;  ///< centre of fine column 0
