@@ -1,5 +1,6 @@
 #include "calibration/fit.h"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>

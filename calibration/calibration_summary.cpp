@@ -1,0 +1,126 @@
+#include "calibration/calibration_summary.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calibration/diagnosis.h"
+
+namespace nadir::calibration {
+namespace {
+
+constexpr std::size_t kWorstShown = 3;
+
+double sigma_mm(const PlaneMap& map, const vision::PixelPoint& pixel) {
+  return 1e3 * std::sqrt(map.calibration_covariance_m2(pixel).trace() / 2.0);
+}
+
+std::string residual_table(const ResidualStatistics& residuals) {
+  return fmt::format(
+      "  residual        mm       px\n"
+      "  RMS     {:10.3f} {:8.3f}\n"
+      "  95 %    {:10.3f} {:8.3f}\n"
+      "  worst   {:10.3f} {:8.3f}\n",
+      1e3 * residuals.rms_m, residuals.rms_px, 1e3 * residuals.p95_m, residuals.p95_px,
+      1e3 * residuals.max_m, residuals.max_px);
+}
+
+std::string worst_table(const FieldPoints& points, const FieldFit& fit) {
+  std::string text = "  worst points  u px     v px       mm       px\n";
+  for (const std::size_t index : worst_points(fit, kWorstShown)) {
+    const FieldPoint& point = points.points[index];
+    const PointResidual& residual = fit.point_residuals[index];
+    text +=
+        fmt::format("  line {:<5} {:8.1f} {:8.1f} {:8.3f} {:8.3f}\n", point.line, point.pixel.x(),
+                    point.pixel.y(), 1e3 * residual.distance_m, residual.distance_px);
+  }
+  return text;
+}
+
+std::string noise_text(const StatedNoise& noise) {
+  if (!noise.is_stated()) return "none";
+  std::string text;
+  if (noise.pixel_px) text += fmt::format("{} px in the image", *noise.pixel_px);
+  if (noise.survey_m) {
+    text += fmt::format("{}{} mm on the field", text.empty() ? "" : ", ", 1e3 * *noise.survey_m);
+  }
+  return text;
+}
+
+/// What the calibration itself adds to the error of each place, at the middle and the corners of
+/// the points.
+std::string error_text(const Calibration& calibration) {
+  const PixelBox& box = calibration.points_box;
+  const vision::PixelPoint middle = 0.5 * (box.low_px + box.high_px);
+  double corner_mm = 0.0;
+  for (const double u : {box.low_px.x(), box.high_px.x()}) {
+    for (const double v : {box.low_px.y(), box.high_px.y()}) {
+      corner_mm = std::max(corner_mm, sigma_mm(calibration.map, {u, v}));
+    }
+  }
+  const double scale = std::sqrt(std::abs(calibration.map.jacobian_m_per_px(middle).determinant()));
+  return fmt::format(
+      "  scale           {:.3f} mm/px in the middle of the points\n"
+      "  stated noise    {}\n"
+      "  own error       {:.3f} mm in the middle, {:.3f} mm at the corners (one sigma per axis)\n",
+      1e3 * scale, noise_text(calibration.noise), sigma_mm(calibration.map, middle), corner_mm);
+}
+
+nlohmann::ordered_json residuals_json(const ResidualStatistics& residuals) {
+  return {{"points", residuals.points},
+          {"rms_m", residuals.rms_m},
+          {"p95_m", residuals.p95_m},
+          {"max_m", residuals.max_m}};
+}
+
+}  // namespace
+
+std::string field_summary(const FieldPoints& points, const Calibration& calibration,
+                          const FieldFit& fit) {
+  std::string text =
+      fmt::format("polynomial2 on {} points of {}, plane {} m above the field\n\n{}\n{}\n{}",
+                  fit.residuals.points, points.file, calibration.height_m,
+                  residual_table(fit.residuals), worst_table(points, fit), error_text(calibration));
+  const auto remarks = fit_remarks(points, calibration.noise, fit);
+  if (!remarks.empty()) text += "\n";
+  for (const std::string& remark : remarks) text += "note: " + remark + "\n";
+  return text;
+}
+
+std::string field_json(const FieldPoints& points, const Calibration& calibration,
+                       const FieldFit& fit) {
+  nlohmann::ordered_json json = residuals_json(fit.residuals);
+  json["rms_px"] = fit.residuals.rms_px;
+  json["p95_px"] = fit.residuals.p95_px;
+  json["max_px"] = fit.residuals.max_px;
+  json["model"] = "polynomial2";
+  json["height_m"] = calibration.height_m;
+  json["explained_rms_m"] = calibration.noise.is_stated()
+                                ? nlohmann::ordered_json(fit.explained_rms_m)
+                                : nlohmann::ordered_json(nullptr);
+  json["worst"] = nlohmann::ordered_json::array();
+  for (const std::size_t index : worst_points(fit, kWorstShown)) {
+    const PointResidual& residual = fit.point_residuals[index];
+    json["worst"].push_back({{"line", points.points[index].line},
+                             {"error_m", residual.distance_m},
+                             {"error_px", residual.distance_px}});
+  }
+  json["remarks"] = fit_remarks(points, calibration.noise, fit);
+  return json.dump() + "\n";
+}
+
+std::string validation_summary(const Validation& validation) {
+  return fmt::format("{} points\n\n{}\n  inside the predicted 95 % ellipse: {:.1f} %\n",
+                     validation.residuals.points, residual_table(validation.residuals),
+                     100.0 * validation.coverage95);
+}
+
+std::string validation_json(const Validation& validation) {
+  nlohmann::ordered_json json = residuals_json(validation.residuals);
+  json["coverage95"] = validation.coverage95;
+  return json.dump() + "\n";
+}
+
+}  // namespace nadir::calibration
