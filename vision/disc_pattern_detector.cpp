@@ -1,10 +1,168 @@
 #include "vision/disc_pattern_detector.h"
 
+#include <algorithm>
+#include <vector>
+
+#include "vision/disc_measurement.h"
+#include "vision/input/input_error.h"
+#include "vision/pattern_match.h"
+#include "vision/sparse_search.h"
+
 namespace nadir::vision {
-struct DiscPatternDetector::State {};
-DiscPatternDetector::DiscPatternDetector(const MarkerLayout&, const PixelScaleGrid&, const ColourClasses&) {}
+namespace {
+
+constexpr double kSmallestRadius_px = 1.2;
+constexpr double kHueHalfWidth_rad = 0.87;
+constexpr double kLeastArea = 0.4;  // soft pixel count over expected count
+constexpr double kMostArea = 1.7;
+constexpr std::size_t kMostRejections = 256;
+constexpr std::size_t kMostRobots = 256;
+constexpr int kMostCandidates = 4000;  // a picture full of confetti must not take for ever
+
+std::vector<ColourScore> centre_scores(const MarkerLayout& layout, const ColourClasses& colours) {
+  std::vector<ColourScore> scores;
+  for (const Team& team : layout.teams) {
+    scores.push_back(colour_score(colours, team.centre_colour, kHueHalfWidth_rad));
+  }
+  return scores;
+}
+
+}  // namespace
+
+struct DiscPatternDetector::State {
+  State(const MarkerLayout& marker_layout, const PixelScaleGrid& scale_grid,
+        const ColourClasses& colours)
+      : layout(marker_layout),
+        scale(scale_grid),
+        team_scores(centre_scores(layout, colours)),
+        search(scale.width_px(), scale.height_px(),
+               layout.centre_radius_m * scale.smallest_pixels_per_metre(),
+               layout.centre_radius_m * scale.largest_pixels_per_metre(), team_scores),
+        pattern(layout, colours) {
+    shared.reserve(kMostRobots);
+  }
+
+  void consider(const cv::Mat& bgr, const Seed& seed, DetectionResult& result);
+  void reject(DetectionResult& result, const PixelPoint& place, RejectReason reason) const;
+  void resolve_shared_discs(DetectionResult& result);
+
+  MarkerLayout layout;
+  PixelScaleGrid scale;
+  std::vector<ColourScore> team_scores;
+  SparseSearch search;
+  PatternMatch pattern;
+  int candidates = 0;
+  std::vector<char> shared;
+};
+
+void DiscPatternDetector::State::reject(DetectionResult& result, const PixelPoint& place,
+                                        RejectReason reason) const {
+  if (result.rejected.size() < kMostRejections) {
+    result.rejected.push_back({place, reason});
+  } else {
+    ++result.rejected_not_listed;
+  }
+}
+
+void DiscPatternDetector::State::consider(const cv::Mat& bgr, const Seed& seed,
+                                          DetectionResult& result) {
+  const LocalScale local = local_scale(scale, seed.pixel);
+  const double radius_px = layout.centre_radius_m * static_cast<double>(local.scale_px_per_m);
+  if (++candidates > kMostCandidates) {
+    search.mark(seed.pixel, 0.0, seed.colour);
+    ++result.rejected_not_listed;
+    return;
+  }
+  DiscMeasurement disc;
+  const MeasureOutcome outcome = measure_disc(bgr, local, layout.centre_radius_m, seed.pixel, disc);
+  search.mark(seed.pixel, 0.8 * radius_px, seed.colour);
+  if (outcome != MeasureOutcome::kMeasured) {
+    if (outcome == MeasureOutcome::kOutsideImage) {
+      reject(result, seed.pixel, RejectReason::kOutsideImage);
+    } else if (outcome == MeasureOutcome::kWeakContrast) {
+      reject(result, seed.pixel, RejectReason::kWeakContrast);
+    } else {
+      reject(result, seed.pixel, RejectReason::kNotRound);
+    }
+    return;
+  }
+  search.mark(disc.centre_px, 1.3 * radius_px, seed.colour);
+  const double area = disc.pixels / disc.expected_pixels;
+  const float hue = team_scores[seed.colour](disc.colour - disc.surroundings);
+  if (hue <= 0.0F) return reject(result, disc.centre_px, RejectReason::kWeakContrast);
+  if (area < kLeastArea || area > kMostArea) {
+    return reject(result, disc.centre_px, RejectReason::kWrongSize);
+  }
+  RobotObservation robot;
+  RejectReason reason{};
+  if (!pattern.match(bgr, local, disc, seed.colour, robot, reason)) {
+    return reject(result, disc.centre_px, reason);
+  }
+  if (result.robots.size() >= kMostRobots) {
+    return reject(result, disc.centre_px, RejectReason::kTooManyCandidates);
+  }
+  result.robots.push_back(robot);
+}
+
+// A disc can belong to one robot only: the more confident one keeps it.
+void DiscPatternDetector::State::resolve_shared_discs(DetectionResult& result) {
+  auto& robots = result.robots;
+  shared.assign(robots.size(), 0);
+  for (std::size_t a = 0; a < robots.size(); ++a) {
+    for (std::size_t b = a + 1; b < robots.size(); ++b) {
+      const LocalScale local = local_scale(scale, robots[a].discs[0].centre_px);
+      const double reach_px =
+          0.5 * layout.centre_radius_m * static_cast<double>(local.scale_px_per_m);
+      bool touch = false;
+      for (int i = 0; i < robots[a].disc_count && !touch; ++i) {
+        for (int j = 0; j < robots[b].disc_count && !touch; ++j) {
+          touch = (robots[a].discs[i].centre_px - robots[b].discs[j].centre_px).norm() < reach_px;
+        }
+      }
+      if (touch) shared[robots[a].confidence < robots[b].confidence ? a : b] = 1;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (shared[i] != 0) {
+      reject(result, robots[i].discs[0].centre_px, RejectReason::kSharedDisc);
+    } else {
+      if (kept != i) robots[kept] = robots[i];
+      ++kept;
+    }
+  }
+  robots.resize(kept);
+}
+
+DiscPatternDetector::DiscPatternDetector(const MarkerLayout& layout, const PixelScaleGrid& scale,
+                                         const ColourClasses& colours) {
+  double smallest_radius_m = layout.centre_radius_m;
+  for (const Disc& disc : layout.outer)
+    smallest_radius_m = std::min(smallest_radius_m, disc.radius_m);
+  const double smallest_px = smallest_radius_m * scale.largest_pixels_per_metre();
+  if (!(smallest_px >= kSmallestRadius_px)) {
+    throw InputError(
+        {layout.name, 0, 0},
+        "its smallest disc has a radius of " + std::to_string(smallest_px) + " px in this camera",
+        "use larger discs or a closer camera: at least " + std::to_string(kSmallestRadius_px) +
+            " px are needed");
+  }
+  state_ = std::make_unique<State>(layout, scale, colours);
+}
+
 DiscPatternDetector::~DiscPatternDetector() = default;
 DiscPatternDetector::DiscPatternDetector(DiscPatternDetector&&) noexcept = default;
 DiscPatternDetector& DiscPatternDetector::operator=(DiscPatternDetector&&) noexcept = default;
-void DiscPatternDetector::detect(const cv::Mat&, DetectionResult& result) { result.clear(); }
+
+void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
+  result.clear();
+  result.robots.reserve(kMostRobots);
+  result.rejected.reserve(kMostRejections);
+  State& state = *state_;
+  state.candidates = 0;
+  state.search.scan(bgr);
+  state.search.for_each_seed([&](const Seed& seed) { state.consider(bgr, seed, result); });
+  state.resolve_shared_discs(result);
+}
+
 }  // namespace nadir::vision

@@ -11,18 +11,20 @@
 namespace nadir::vision {
 
 /// Finds all robots of one layout in a frame without knowing anything of earlier frames.
-/// Looks at a sparse grid of pixels first, then closely where a centre disc may be. Not thread-safe: one per thread.
+/// Looks at a sparse grid of pixels first, then closely where a centre disc may be. Not
+/// thread-safe: one per thread.
 class DiscPatternDetector {
  public:
-  /// `scale` must be that of the layout's marker plane. Throws InputError if the discs would be too small to see.
+  /// `scale` must be that of the layout's marker plane. Throws InputError if the discs would be too
+  /// small to see.
   DiscPatternDetector(const MarkerLayout& layout, const PixelScaleGrid& scale,
                       const ColourClasses& colours = default_colour_classes());
   ~DiscPatternDetector();
   DiscPatternDetector(DiscPatternDetector&&) noexcept;
   DiscPatternDetector& operator=(DiscPatternDetector&&) noexcept;
 
-  /// `bgr` is CV_8UC3 of the scale grid's size. `result` is cleared and filled; no memory is allocated
-  /// after the first call. An identity may be found twice: the tracker decides.
+  /// `bgr` is CV_8UC3 of the scale grid's size. `result` is cleared and filled; no memory is
+  /// allocated after the first call. An identity may be found twice: the tracker decides.
   void detect(const cv::Mat& bgr, DetectionResult& result);
 
  private:

@@ -28,8 +28,9 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
 
-  /// Waits for the next picture (at most about 100 ms while a camera is away) and writes it into `frame`,
-  /// whose image buffer is used again where its size fits. Never throws on a bad picture or a lost camera.
+  /// Waits for the next picture (at most about 100 ms while a camera is away) and writes it into
+  /// `frame`, whose image buffer is used again where its size fits. Never throws on a bad picture
+  /// or a lost camera.
   virtual ReadResult read(Frame& frame) = 0;
 
   /// True for a camera in real time, whose frames come at their own pace.

@@ -18,7 +18,8 @@ inline constexpr std::array<const char*, kColourCount> kColourNames = {
 /// Most discs that one robot may carry, the centre disc included.
 inline constexpr int kMaxDiscs = 8;
 
-/// A round mark on the robot's top. Robot frame: x to the front, y to the left, origin at the robot's centre.
+/// A round mark on the robot's top. Robot frame: x to the front, y to the left, origin at the
+/// robot's centre.
 struct Disc {
   Eigen::Vector2d position_robot_m = Eigen::Vector2d::Zero();
   double radius_m = 0.0;
@@ -30,30 +31,33 @@ struct Team {
   Colour centre_colour = Colour::kBlue;
 };
 
-/// A robot whose number is written in the colours of its outer discs, in the order of MarkerLayout::outer.
+/// A robot whose number is written in the colours of its outer discs, in the order of
+/// MarkerLayout::outer.
 struct Identity {
   int id = 0;
   std::vector<Colour> outer_colours;
 };
 
-/// How a kind of robot looks from above: a centre disc in the team's colour and one or more outer discs.
+/// How a kind of robot looks from above: a centre disc in the team's colour and one or more outer
+/// discs.
 struct MarkerLayout {
   std::string name;
-  double height_m = 0.0;         ///< of the marker plane above the field
+  double height_m = 0.0;  ///< of the marker plane above the field
   double centre_radius_m = 0.0;
-  std::vector<Team> teams;       ///< at least one; their centre colours differ
-  std::vector<Disc> outer;       ///< 1 to kMaxDiscs - 1 discs
-  std::vector<Identity> identities;  ///< empty: robots are anonymous and outer discs have fixed colours
+  std::vector<Team> teams;  ///< at least one; their centre colours differ
+  std::vector<Disc> outer;  ///< 1 to kMaxDiscs - 1 discs
+  std::vector<Identity>
+      identities;  ///< empty: robots are anonymous and outer discs have fixed colours
 
   bool is_anonymous() const { return identities.empty(); }
   int disc_count() const { return 1 + static_cast<int>(outer.size()); }
-  /// Disc 0 is the centre disc, disc i the outer disc i - 1. Its colour is that of the robot `id` of team `team`;
-  /// `identity` is an index into identities (ignored when anonymous).
+  /// Disc 0 is the centre disc, disc i the outer disc i - 1. Its colour is that of the robot `id`
+  /// of team `team`; `identity` is an index into identities (ignored when anonymous).
   Disc disc(int index, int team, int identity) const;
 };
 
-/// Reads a layout file (kind: discs). Throws InputError: unknown, duplicate or missing key, value out of range,
-/// discs that overlap, two equal identities, two teams of one colour.
+/// Reads a layout file (kind: discs). Throws InputError: unknown, duplicate or missing key, value
+/// out of range, discs that overlap, two equal identities, two teams of one colour.
 MarkerLayout load_marker_layout(const std::filesystem::path& file);
 
 /// The colour's name, or nothing known: throws std::out_of_range.

@@ -22,12 +22,13 @@ struct DiscObservation {
 
 /// Discs in the image that together look like one robot of a layout.
 struct RobotObservation {
-  int team = 0;        ///< index into MarkerLayout::teams
-  int identity = -1;   ///< index into MarkerLayout::identities, -1 for an anonymous robot
+  int team = 0;       ///< index into MarkerLayout::teams
+  int identity = -1;  ///< index into MarkerLayout::identities, -1 for an anonymous robot
   int disc_count = 0;
-  std::array<DiscObservation, kMaxDiscs> discs;  ///< disc 0 is the centre disc, as in MarkerLayout::disc
-  double fit_error_px = 0.0;   ///< RMS distance of the discs from the layout's best fit
-  double confidence = 0.0;     ///< 0 to 1: agreement in colour, size and place
+  std::array<DiscObservation, kMaxDiscs>
+      discs;                  ///< disc 0 is the centre disc, as in MarkerLayout::disc
+  double fit_error_px = 0.0;  ///< RMS distance of the discs from the layout's best fit
+  double confidence = 0.0;    ///< 0 to 1: agreement in colour, size and place
 };
 
 /// Why a candidate is not a robot.

@@ -8,15 +8,17 @@
 
 namespace nadir::vision {
 
-/// How many metres of the marker plane a pixel shows, and in which direction, at each place of the image:
-/// all that a detector must know about a calibration. Whoever has the calibration makes one.
+/// How many metres of the marker plane a pixel shows, and in which direction, at each place of the
+/// image: all that a detector must know about a calibration. Whoever has the calibration makes one.
 class PixelScaleGrid {
  public:
   /// d(x_m, y_m)/d(u_px, v_px) at a pixel.
   using JacobianFunction = std::function<Eigen::Matrix2d(const PixelPoint&)>;
 
-  /// Samples `jacobian` at nodes `spacing_px` apart (last ones at or beyond the border). It is not called later.
-  PixelScaleGrid(int width_px, int height_px, const JacobianFunction& jacobian, int spacing_px = 32);
+  /// Samples `jacobian` at nodes `spacing_px` apart (last ones at or beyond the border). It is not
+  /// called later.
+  PixelScaleGrid(int width_px, int height_px, const JacobianFunction& jacobian,
+                 int spacing_px = 32);
 
   int width_px() const { return width_px_; }
   int height_px() const { return height_px_; }

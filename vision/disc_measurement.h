@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "vision/colour_classes.h"
+#include "vision/pixel.h"
+#include "vision/pixel_scale_grid.h"
+
+namespace nadir::vision {
+
+/// The marker plane around one place of the image, as an affine map.
+struct LocalScale {
+  Eigen::Matrix2f pixels_per_metre;  ///< d(u_px, v_px)/d(x_m, y_m)
+  Eigen::Matrix2f metres_per_pixel;  ///< its inverse
+  float scale_px_per_m = 0.0F;       ///< sqrt|det|: a disc of radius r covers pi (r scale)^2 pixels
+};
+
+LocalScale local_scale(const PixelScaleGrid& grid, const PixelPoint& pixel);
+
+/// One disc measured in the image.
+struct DiscMeasurement {
+  PixelPoint centre_px = PixelPoint::Zero();
+  double pixels = 0.0;             ///< sum of the pixels' shares in the disc
+  double expected_pixels = 0.0;    ///< area by the calibration
+  double variance_px2 = 0.0;       ///< of the centre, per axis
+  double contrast = 0.0;           ///< length of colour - surroundings, grey levels
+  Bgr colour = Bgr::Zero();        ///< of the disc's middle
+  Bgr surroundings = Bgr::Zero();  ///< median of a ring around the disc
+};
+
+enum class MeasureOutcome { kMeasured, kOutsideImage, kWeakContrast, kDriftsAway };
+
+/// Finds the centre of the disc of radius `radius_m` near `start` (at most one radius away). Every
+/// pixel's share in the disc is its value projected on the line from the surroundings' colour to
+/// the disc's; the centre is the mean of the pixels weighted with a share that is limited above, so
+/// that a shadow across the disc hardly moves it. The variance follows from the scatter of the
+/// surroundings and of the disc's inside, carried to the centre through the pixels that are not
+/// limited (those on the edge), plus a floor for what this does not see.
+MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double radius_m,
+                            const PixelPoint& start, DiscMeasurement& disc);
+
+}  // namespace nadir::vision

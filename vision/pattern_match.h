@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "vision/colour_classes.h"
+#include "vision/disc_measurement.h"
+#include "vision/marker_layout.h"
+#include "vision/marker_observation.h"
+
+namespace nadir::vision {
+
+/// Finds the outer discs that belong to a measured centre disc: tries every heading, measures the
+/// discs of the best one, fits the layout to them and reads the identity from their colours.
+class PatternMatch {
+ public:
+  PatternMatch(const MarkerLayout& layout, const ColourClasses& colours);
+
+  /// `centre` is a measured disc in the colour of team `team`. Fills `robot` and returns true, or
+  /// says why not.
+  bool match(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre, int team,
+             RobotObservation& robot, RejectReason& reason) const;
+
+ private:
+  struct OuterDisc {
+    Eigen::Vector2f position_m;
+    float radius_m;
+    std::vector<Colour> colours;  ///< that this disc may have
+    std::vector<ColourScore> scores;
+  };
+  struct Reading {
+    Colour colour = Colour::kBlack;
+    float score = 0.0F;   ///< of the best colour
+    float margin = 1.0F;  ///< 0 to 1: how far the second best is behind
+  };
+
+  int best_heading(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre,
+                   float& score) const;
+  bool measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale, int heading,
+                           const DiscMeasurement& centre,
+                           std::array<DiscMeasurement, kMaxDiscs>& discs) const;
+  Reading read_colour(const OuterDisc& outer, const Bgr& difference) const;
+  int find_identity(const RobotObservation& robot) const;
+  double fit_error_px(const LocalScale& scale, const RobotObservation& robot) const;
+
+  MarkerLayout layout_;
+  std::vector<OuterDisc> outer_;
+  std::vector<Eigen::Vector2f> headings_;  ///< (cos, sin) of the headings that are tried
+  double tolerance_m_;                     ///< of the fit of the discs to the layout
+};
+
+}  // namespace nadir::vision
