@@ -13,12 +13,25 @@ constexpr int kRingSamples = 16;
 constexpr float kRingDistance_px = 2.0F;  // of the ring of surroundings from the disc's edge
 constexpr float kWindowMargin_px = 1.8F;  // the window's taper ends here, outside the edge
 constexpr float kTaper_px = 1.0F;
-constexpr float kShareLow = 0.10F;       // shares below count nothing, ...
-constexpr float kShareHigh = 0.60F;      // ... above count fully
+// Shares below `low` count nothing, above `high` fully. Low limits find the disc from afar; limits
+// about one half put the edge where it is and leave out what lies behind a thin rim.
+struct ShareLimits {
+  float low;
+  float high;
+};
+constexpr ShareLimits kFindLimits{0.10F, 0.60F};
+constexpr ShareLimits kMeasureLimits{0.30F, 0.70F};
+constexpr float kDeep_px = 2.2F;      // well inside: this far from the edge
+constexpr float kLeastInside = 6.0F;  // pixels, for statistics of the disc's inside
+constexpr float kShadingOverScatter =
+    8.0F;  // explained sum of squares over scatter that chance may bring
+constexpr double kShadingError =
+    0.10;  // px of centre error per relative change of brightness over a radius
 constexpr float kLeastContrast = 10.0F;  // grey levels
-constexpr int kMostIterations = 5;
+constexpr int kMostIterations = 6;
+constexpr double kSettled_px = 0.5;
 constexpr double kConverged_px = 0.02;
-constexpr double kFloorVariance_px2 = 1.0e-4;  // (0.01 px)^2: sampling, point spread, demosaicing
+constexpr double kFloorVariance_px2 = 4.9e-5;  // (0.007 px)^2: sampling, point spread, demosaicing
 
 struct UnitVector {
   float x;
@@ -89,9 +102,15 @@ struct WindowSums {
   float share = 0.0F;  // soft pixel count
   float edge_moment =
       0.0F;  // sum of squared distance (mean of both axes) of pixels whose share is not limited
-  float inside = 0.0F;  // pixels well inside, their shares and squares and first moments
+  float inside = 0.0F;  // number of pixels well inside, and sums over them
+  float inside_u = 0.0F;
+  float inside_v = 0.0F;
+  float inside_u2 = 0.0F;
+  float inside_v2 = 0.0F;
   float inside_share = 0.0F;
   float inside_share2 = 0.0F;
+  float inside_share_u = 0.0F;
+  float inside_share_v = 0.0F;
 };
 
 struct Window {
@@ -100,6 +119,10 @@ struct Window {
   Eigen::Matrix2f to_round;  // pixel offset -> offset in which the disc is a circle of radius_px
   Bgr direction;             // projection on the colour line; share = direction . value - offset
   float offset;
+  ShareLimits limits;
+  float slope_u;  // of the brightness inside the disc, share per pixel: light that falls off, a
+                  // shadow's edge
+  float slope_v;
 };
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
@@ -112,9 +135,9 @@ pass_over_window(const cv::Mat& bgr, const Window& w) {
   const float outer2 = outer * outer;
   const float inner = outer - kTaper_px;
   const float taper_gain = 1.0F / (outer2 - inner * inner);
-  const float deep = std::max(0.0F, w.radius_px - 1.8F);
+  const float deep = std::max(0.0F, w.radius_px - kDeep_px);
   const float deep2 = deep * deep;
-  const float share_gain = 1.0F / (kShareHigh - kShareLow);
+  const float share_gain = 1.0F / (w.limits.high - w.limits.low);
   const float half_u = outer * std::max(1.0F, 1.0F / w.to_round.col(0).norm());
   const float half_v = outer * std::max(1.0F, 1.0F / w.to_round.col(1).norm());
   const auto cu = static_cast<float>(w.centre.x());
@@ -135,7 +158,8 @@ pass_over_window(const cv::Mat& bgr, const Window& w) {
       if (taper <= 0.0F) continue;
       const float share = w.direction[0] * pixel[0] + w.direction[1] * pixel[1] +
                           w.direction[2] * pixel[2] - w.offset;
-      const float limited = (share - kShareLow) * share_gain;
+      const float lit = std::clamp(1.0F + w.slope_u * du + w.slope_v * dv, 0.3F, 1.7F);
+      const float limited = (share / lit - w.limits.low) * share_gain;
       const float weight = taper * std::clamp(limited, 0.0F, 1.0F);
       sums.weight += weight;
       sums.weight_u += weight * du;
@@ -146,6 +170,12 @@ pass_over_window(const cv::Mat& bgr, const Window& w) {
         sums.inside += 1.0F;
         sums.inside_share += share;
         sums.inside_share2 += share * share;
+        sums.inside_u += du;
+        sums.inside_v += dv;
+        sums.inside_u2 += du * du;
+        sums.inside_v2 += dv * dv;
+        sums.inside_share_u += share * du;
+        sums.inside_share_v += share * dv;
       }
     }
   }
@@ -164,19 +194,42 @@ float ring_deviation(const Ring& ring, const Window& w) {
   return 1.4826F * *middle;
 }
 
-double centre_variance_px2(const WindowSums& sums, float ring_deviation_share) {
-  double inside_variance = 0.0;
-  if (sums.inside >= 4.0F) {
-    const double mean = sums.inside_share / sums.inside;
-    inside_variance =
-        std::max(0.0, sums.inside_share2 / static_cast<double>(sums.inside) - mean * mean);
+// How brightness changes across the disc: a straight line through the pixels well inside, as far as
+// it is more than their scatter would make it.
+void fit_shading(const WindowSums& sums, Window& window) {
+  if (sums.inside < kLeastInside || sums.inside_share <= 0.0F) return;
+  const float mean = sums.inside_share / sums.inside;
+  const float slope_u = (sums.inside_share_u - mean * sums.inside_u) / sums.inside_u2;
+  const float slope_v = (sums.inside_share_v - mean * sums.inside_v) / sums.inside_v2;
+  const float explained =
+      slope_u * slope_u * sums.inside_u2 + slope_v * slope_v * sums.inside_v2;  // sum of squares
+  const float scatter =
+      std::max(0.0F, sums.inside_share2 - sums.inside * mean * mean - explained) / sums.inside;
+  const float trust =
+      std::max(0.0F, explained - kShadingOverScatter * scatter) / (explained + 1e-9F);
+  window.slope_u = trust * slope_u / mean;
+  window.slope_v = trust * slope_v / mean;
+}
+
+double centre_variance_px2(const WindowSums& sums, const Window& window,
+                           float ring_deviation_share) {
+  const double around = static_cast<double>(ring_deviation_share) * ring_deviation_share;
+  double inside = around;
+  if (sums.inside >= kLeastInside) {
+    const double mean = sums.inside_share / static_cast<double>(sums.inside);
+    const double along_u = sums.inside_share_u - mean * sums.inside_u;
+    const double along_v = sums.inside_share_v - mean * sums.inside_v;
+    const double explained =
+        along_u * along_u / sums.inside_u2 + along_v * along_v / sums.inside_v2;
+    inside = std::max(0.0, (sums.inside_share2 - explained) / sums.inside - mean * mean);
   }
-  const double noise2 =
-      std::max(static_cast<double>(ring_deviation_share) * ring_deviation_share, inside_variance);
-  const double gain = 1.0 / (kShareHigh - kShareLow);
-  const double per_axis = 0.5 * sums.edge_moment * gain * gain * noise2 /
+  const double gain = 1.0 / (window.limits.high - window.limits.low);
+  // A pixel on the edge is as noisy as the mean of both sides.
+  const double per_axis = 0.5 * sums.edge_moment * gain * gain * 0.5 * (around + inside) /
                           (static_cast<double>(sums.weight) * sums.weight);
-  return per_axis + kFloorVariance_px2;
+  const double shading =
+      kShadingError * window.radius_px * std::hypot(window.slope_u, window.slope_v);
+  return per_axis + shading * shading + kFloorVariance_px2;
 }
 
 }  // namespace
@@ -196,6 +249,9 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
   window.centre = start;
   window.radius_px = radius_px;
   window.to_round = scale.metres_per_pixel * scale.scale_px_per_m;
+  window.limits = kFindLimits;
+  window.slope_u = 0.0F;
+  window.slope_v = 0.0F;
   WindowSums sums;
   Ring ring;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
@@ -219,12 +275,17 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
     const PixelPoint step(sums.weight_u / sums.weight, sums.weight_v / sums.weight);
     window.centre += step;
     if ((window.centre - start).norm() > 1.5 * radius_px + 1.0) return MeasureOutcome::kDriftsAway;
-    if (step.norm() < kConverged_px) break;
+    const bool settled = step.norm() < kSettled_px;
+    if (settled && iteration >= 1) {
+      if (window.limits.low == kMeasureLimits.low && step.norm() < kConverged_px) break;
+      window.limits = kMeasureLimits;
+      fit_shading(sums, window);
+    }
   }
   disc.centre_px = window.centre;
   disc.pixels = sums.share;
   disc.expected_pixels = M_PI * radius_px * radius_px;
-  disc.variance_px2 = centre_variance_px2(sums, ring_deviation(ring, window));
+  disc.variance_px2 = centre_variance_px2(sums, window, ring_deviation(ring, window));
   return MeasureOutcome::kMeasured;
 }
 
