@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vision/frame_source.h"
+
+namespace nadir::vision {
+
+/// What a source's name does not say.
+struct SourceOptions {
+  double rate_hz = 30.0;     ///< of a recording without times; a camera is asked for this rate
+  CaptureTime start_time{};  ///< of the first frame of a recording without times
+  int width_px = 0;          ///< asked of a camera; 0 leaves the choice to it
+  int height_px = 0;         ///< asked of a camera; 0 leaves the choice to it
+};
+
+/// Opens what a user names: a folder of images, a video file, `v4l2:/dev/video0` or
+/// `synthetic:SCENE.yaml`. Throws InputError for an unknown scheme, a path that does not exist, and
+/// whatever can never work. A camera that is not there is no error: it may come.
+std::unique_ptr<FrameSource> open_source(const std::string& source,
+                                         const SourceOptions& options = {});
+
+}  // namespace nadir::vision
