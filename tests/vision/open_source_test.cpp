@@ -66,6 +66,36 @@ TEST(OpenSource, SaysThatAFileIsNoCamera) {
             "v4l2:" + file + ": is no video device; nadir keeps trying");
 }
 
+TEST(OpenSource, OpensASyntheticScene) {
+  const std::string scene = std::string("synthetic:") + NADIR_DATA_DIR + "/scenes/demo.yaml";
+  Frame frame;
+  Frame again;
+  Frame other;
+  ASSERT_EQ(open_source(scene)->read(frame).status, ReadStatus::kFrame);
+  EXPECT_EQ(frame.number, 0U);
+  EXPECT_EQ(frame.image.type(), CV_8UC3);
+  ASSERT_EQ(open_source(scene)->read(again).status, ReadStatus::kFrame);
+  EXPECT_EQ(cv::norm(frame.image, again.image, cv::NORM_INF), 0.0);
+  SourceOptions options;
+  options.seed = 2;
+  ASSERT_EQ(open_source(scene, options)->read(other).status, ReadStatus::kFrame);
+  EXPECT_GT(cv::norm(frame.image, other.image, cv::NORM_INF), 0.0);
+}
+
+TEST(OpenSource, RunsASyntheticSceneInRealTime) {
+  SourceOptions options;
+  options.synthetic_in_real_time = true;
+  const std::string scene = std::string("synthetic:") + NADIR_DATA_DIR + "/scenes/demo.yaml";
+  EXPECT_TRUE(open_source(scene, options)->is_live());
+  EXPECT_FALSE(open_source(scene)->is_live());
+}
+
+TEST(OpenSource, SaysThatASceneIsMissing) {
+  EXPECT_EQ(error_of("synthetic:no_scene.yaml"),
+            "no_scene.yaml: cannot be opened: No such file or directory; check the path and the "
+            "permissions");
+}
+
 TEST(OpenSource, ListsWhatIsPossible) {
   EXPECT_EQ(error_of("rtsp2:foo"), "rtsp2:foo: unknown source scheme 'rtsp2'" + kPossible);
   EXPECT_EQ(error_of("no/such/folder"), "no/such/folder: no such file or folder" + kPossible);

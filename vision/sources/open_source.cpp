@@ -8,6 +8,7 @@
 #include "vision/sources/image_folder.h"
 #include "vision/sources/v4l2_camera.h"
 #include "vision/sources/video_file.h"
+#include "vision/synthetic/synthetic_source.h"
 
 namespace nadir::vision {
 namespace {
@@ -62,6 +63,11 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const Source
   if (parts.scheme == "v4l2") {
     return std::make_unique<V4l2Camera>(
         parts.rest, V4l2Request{options.width_px, options.height_px, options.rate_hz});
+  }
+  if (parts.scheme == "synthetic") {
+    const SyntheticPace pace =
+        options.synthetic_in_real_time ? SyntheticPace::kRealTime : SyntheticPace::kFastest;
+    return std::make_unique<SyntheticSource>(load_scene(parts.rest), options.seed, pace);
   }
   throw InputError({source}, "unknown source scheme '" + parts.scheme + "'", kPossibleSources);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -13,6 +14,10 @@ struct SourceOptions {
   CaptureTime start_time{};  ///< of the first frame of a recording without times
   int width_px = 0;          ///< asked of a camera; 0 leaves the choice to it
   int height_px = 0;         ///< asked of a camera; 0 leaves the choice to it
+  std::uint64_t seed = 1;    ///< of everything random in a synthetic scene
+  /// A synthetic scene behaves like a camera: its rate, wall-clock times, late readers lose frames.
+  /// Otherwise it is a recording: as fast as it is read, with the scene's own times.
+  bool synthetic_in_real_time = false;
 };
 
 /// Opens what a user names: a folder of images, a video file, `v4l2:/dev/video0` or
