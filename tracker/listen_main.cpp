@@ -11,6 +11,7 @@
 #include "tracker/listen_silence.h"
 #include "tracker/listen_text.h"
 #include "tracker/wire/pose_reader.h"
+#include "vision/input/usage_line.h"
 
 namespace {
 
@@ -99,6 +100,7 @@ bool listen(const Options& options) {
 
 void describe_options(CLI::App* app, Options* options) {
   ReaderOptions& reader = options->reader;
+  app->failure_message(nadir::vision::usage_line);
   app->set_version_flag("--version", "nadir-listen " NADIR_VERSION);
   app->footer("Example: nadir-listen --domain 0 --robot 3 --json --count 100");
   app->add_option("--domain", reader.wire.domain, "DDS domain")

@@ -66,6 +66,7 @@ std::string pose_json(const WirePose& pose, std::int64_t now_ns) {
   json["frame"] = pose.frame;
   json["capture_ns"] = pose.capture_ns;
   json["publish_ns"] = pose.publish_ns;
+  json["receive_ns"] = now_ns;
   json["age_ms"] = age_ms(pose.capture_ns, now_ns);
   return one_line(json);
 }
