@@ -76,17 +76,20 @@ std::vector<CalibrationPoint> calibration_points(const Scene& scene, const Camer
 
 void write_recording(Renderer& renderer, std::uint64_t seed, std::uint64_t frames,
                      const std::filesystem::path& folder,
-                     const std::function<void(std::uint64_t)>& progress) {
+                     const std::function<void(std::uint64_t)>& progress, PictureFormat format) {
   const std::filesystem::path pictures = folder / "frames";
   std::filesystem::create_directories(pictures);
   std::string times = "file,capture_ns\n";
   std::ofstream truth = opened(folder / "truth.jsonl");
+  const bool is_jpeg = format == PictureFormat::kJpeg;
+  const std::vector<int> parameters = is_jpeg ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, 95}
+                                              : std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, 1};
   cv::Mat image;
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     renderer.render(frame, image);
-    const std::string name = fmt::format("{:06d}.png", frame);
+    const std::string name = fmt::format("{:06d}.{}", frame, is_jpeg ? "jpg" : "png");
     const std::filesystem::path file = pictures / name;
-    if (!cv::imwrite(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+    if (!cv::imwrite(file.string(), image, parameters)) {
       throw std::runtime_error(file.string() + ": cannot be written");
     }
     times += fmt::format("{},{}\n", name, renderer.capture_time(frame).time_since_epoch().count());
