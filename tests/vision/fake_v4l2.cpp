@@ -1,4 +1,4 @@
-#include "fake_v4l2.h"
+#include "tests/vision/fake_v4l2.h"
 
 #include <linux/videodev2.h>
 

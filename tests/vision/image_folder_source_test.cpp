@@ -3,9 +3,9 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "input_error_line.h"
-#include "scratch_folder.h"
-#include "test_pictures.h"
+#include "tests/vision/input_error_line.h"
+#include "tests/vision/scratch_folder.h"
+#include "tests/vision/test_pictures.h"
 #include "vision/sources/image_folder.h"
 
 namespace nadir::vision {

@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <optional>
 
-#include "fake_v4l2.h"
+#include "tests/vision/fake_v4l2.h"
 #include "vision/sources/v4l2_camera.h"
 
 namespace nadir::vision {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <linux/videodev2.h>
 
-#include "fake_v4l2.h"
+#include "tests/vision/fake_v4l2.h"
 #include "vision/sources/v4l2_clock.h"
 
 namespace nadir::vision {

@@ -4,7 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-#include "test_pictures.h"
+#include "tests/vision/test_pictures.h"
 #include "vision/sources/v4l2_pixels.h"
 
 namespace nadir::vision {
