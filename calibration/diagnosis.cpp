@@ -20,6 +20,10 @@ constexpr double kOutlierMedians = 6.0;
 constexpr double kOutlierLeast_px = 0.1;
 constexpr std::size_t kNamedOutliers = 5;
 constexpr int kComfortablePoints = 20;
+/// Below this share of the stated noise, or of a pixel where none is stated, points agree too well
+/// to be measured.
+constexpr double kTooGoodRatio = 0.3;
+constexpr double kTooGood_px = 1e-3;
 
 double median_distance_m(const FieldFit& fit) {
   std::vector<double> distances;
@@ -47,6 +51,22 @@ std::string misfit_remark(const StatedNoise& noise, const FieldFit& fit) {
            "polynomial cannot follow radial lens distortion.";
   }
   return {};
+}
+
+/// Residuals say nothing of the calibration's error where points were computed or the noise is
+/// overstated.
+std::string too_good_remark(const StatedNoise& noise, const FieldFit& fit) {
+  const bool is_below_noise =
+      noise.is_stated() && fit.residuals.rms_m < kTooGoodRatio * fit.explained_rms_m;
+  const bool is_exact = fit.residuals.rms_px < kTooGood_px;
+  if (!is_below_noise && !is_exact) return {};
+  if (fit.residuals.points == polynomial_terms(2)) {
+    return "six points always fit: their residual says nothing about the error.";
+  }
+  return fmt::format(
+      "the points agree to {:.2g} px, better than they can be measured{}: were they computed? The "
+      "calibration's own error is then not known from them.",
+      fit.residuals.rms_px, is_below_noise ? " by the stated noise" : "");
 }
 
 std::string outlier_remark(const FieldPoints& points, const FieldFit& fit) {
@@ -82,6 +102,7 @@ std::vector<std::string> fit_remarks(const FieldPoints& points, const StatedNois
     if (!remark.empty()) remarks.push_back(std::move(remark));
   };
   add(misfit_remark(noise, fit));
+  add(too_good_remark(noise, fit));
   add(outlier_remark(points, fit));
   if (fit.map.jacobian_m_per_px(points.points.front().pixel).determinant() > 0.0) {
     add("the field is mirrored: seen from above, with v down, y must point to the left of x. Are "

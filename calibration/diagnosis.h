@@ -8,8 +8,8 @@
 namespace nadir::calibration {
 
 /// What a person should know before trusting a fit, the gravest first, each one sentence or two:
-/// the model does not fit, single points that stand out (with their lines), a mirrored field, few
-/// points, no noise stated. Empty where there is nothing to say.
+/// the model does not fit, points too good to be measured, single points that stand out (with their
+/// lines), a mirrored field, few points, no noise stated. Empty where there is nothing to say.
 std::vector<std::string> fit_remarks(const FieldPoints& points, const StatedNoise& noise,
                                      const FieldFit& fit);
 

@@ -25,8 +25,8 @@ struct FieldFit {
   PlaneMap map;
   std::vector<PointResidual> point_residuals;  ///< in the order of the points
   ResidualStatistics residuals;
-  double explained_rms_m =
-      0.0;  ///< residual that the stated noise alone would leave; 0 without a statement
+  /// RMS distance that the stated noise alone would leave; 0 without a statement.
+  double explained_rms_m = 0.0;
 };
 
 /// Least squares fit of a second-order polynomial (theory 4.4) on normalised pixel coordinates, by

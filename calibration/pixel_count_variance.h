@@ -37,8 +37,8 @@ struct LawVariance {
 /// Random drop-out of pixels (theory 4.1 c), per axis in the image, with r the disc's radius and N0
 /// its full count:
 ///
-///     variance_px2 = r^2/4 (1/N - 1/N0) + the detector's own variance_px2 + floor_px^2,   r^2 = N0
-///     / pi
+///     r^2      = N0 / pi
+///     variance = r^2/4 (1/N - 1/N0) + the detector's own variance_px2 + floor_px^2
 ///
 /// mapped to the plane by the Jacobian. No drop-out where N reaches N0.
 struct DropOutVariance {

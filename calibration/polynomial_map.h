@@ -31,8 +31,8 @@ PolynomialBasis polynomial_basis(const Eigen::Vector2d& normalised, int order);
 ///     n   = (pixel - centre_px) / scale_px
 ///     p   = coefficients_m phi(n)
 ///     J   = coefficients_m dphi/dn / scale_px
-///     C   = residual_variance (phi^T M^-1 phi) I  +  lack_of_fit_variance I,   M = sum of phi
-///     phi^T
+///     M   = sum of phi phi^T over the fitted points
+///     C   = (residual_variance phi^T M^-1 phi + lack_of_fit_variance) I
 ///
 /// The first part of C is the sampling error of the coefficients. The second is the model's own
 /// error: what is left of a residual that the noise does not explain is systematic, and so it is an
