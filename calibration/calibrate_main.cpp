@@ -134,17 +134,17 @@ void run_field(const FieldOptions& options) {
   if (size.width_px > 0) {
     check_image_size(calibration, options.points, size.width_px, size.height_px);
   }
-  std::cerr << field_summary(points, calibration, fit);
   write_text(options.output, calibration_yaml(calibration));
   if (!options.json.empty()) write_text(options.json, field_json(points, calibration, fit));
+  std::cerr << field_summary(points, calibration, fit);
 }
 
 void run_validate(const ValidateOptions& options) {
   const Calibration calibration = nadir::calibration::load_calibration(options.calibration);
   const FieldPoints points = nadir::calibration::load_field_points(options.points);
   const auto validation = nadir::calibration::validate(calibration, points);
-  std::cerr << validation_summary(validation);
   write_text(options.json.empty() ? "-" : options.json, validation_json(validation));
+  std::cerr << validation_summary(validation);
 }
 
 }  // namespace

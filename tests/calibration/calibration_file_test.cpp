@@ -69,7 +69,7 @@ TEST_F(CalibrationFile, StartsWithItsVersion) {
 
 TEST_F(CalibrationFile, RefusesAnotherVersion) {
   EXPECT_EQ(line_with("nadir_calibration: 1", "nadir_calibration: 2"),
-            "cal.yaml:1:20: calibration of version 2; this nadir reads version 1; run "
+            "cal.yaml:1:1: calibration of version 2; this nadir reads version 1; run "
             "nadir-calibrate again");
 }
 

@@ -30,7 +30,7 @@ TEST(FitRemarks, SayThatTheModelDoesNotFitALens) {
   EXPECT_THAT(
       remarks(points, {.pixel_px = 0.2, .survey_m = {}}),
       ElementsAre(AllOf(StartsWith("polynomial2 leaves"), HasSubstr("the model does not fit"),
-                        HasSubstr("the stated noise explains 0.8"))));
+                        HasSubstr("the stated noise explains 0.9"))));
   EXPECT_THAT(remarks(points, {}), ElementsAre(HasSubstr("the model probably does not fit"),
                                                HasSubstr("no noise is stated")));
 }

@@ -144,7 +144,7 @@ TEST_F(NoiseFile, ReadsTheLaws) {
 }
 
 TEST_F(NoiseFile, RefusesWhatItDoesNotKnow) {
-  EXPECT_THAT(refusal("nadir_noise: 2\nkind: law\n"), HasSubstr(":1:14: noise file of version 2"));
+  EXPECT_THAT(refusal("nadir_noise: 2\nkind: law\n"), HasSubstr(":1:1: noise file of version 2"));
   EXPECT_THAT(refusal("nadir_noise: 1\nkind: tabel\n"), HasSubstr("did you mean 'table'?"));
   EXPECT_THAT(refusal("nadir_noise: 1\nkind: law\nfloor_px: 1\n"), HasSubstr("floor_px"));
   EXPECT_THAT(refusal("nadir_noise: 1\nkind: pixels\nfloor_px: -1\n"), HasSubstr(":3:11"));
@@ -156,7 +156,7 @@ TEST_F(NoiseFile, RefusesClassesOutOfOrder) {
       "  - {from_pixels: 5, variance_x_m2: 1e-5, variance_y_m2: 1e-5, "
       "variance_heading_rad2: [1e-2, 1e-2]}\n";
   EXPECT_THAT(refusal("nadir_noise: 1\nkind: table\nclasses:\n" + one + one),
-              HasSubstr(":5:19: 'from_pixels' does not rise"));
+              HasSubstr(":5:6: 'from_pixels' does not rise"));
   EXPECT_THAT(refusal("nadir_noise: 1\nkind: table\nclasses:\n" + one),
               HasSubstr("variance_heading_rad2"));
 }

@@ -157,7 +157,10 @@ TEST(PolynomialFit, RefusesPointsOnOneLineOrConic) {
       "second "
       "order; spread them over the field in at least three rows and three columns";
   FieldPoints line = grid_points(8, 3, quadratic_truth);
-  for (FieldPoint& point : line.points) point.pixel.y() = 100.0 + 0.5 * point.pixel.x();
+  for (FieldPoint& point : line.points) {
+    point.pixel.y() = 100.0 + 0.5 * point.pixel.x();
+    point.position_m = quadratic_truth(point.pixel);
+  }
   EXPECT_EQ(input_error_line([&] { fit_polynomial2(line, {}); }), expected);
   EXPECT_EQ(input_error_line([&] { fit_polynomial2(grid_points(8, 2, quadratic_truth), {}); }),
             expected);
