@@ -50,7 +50,7 @@ class StreamReader {
   ReaderStatus status() const;
 
  private:
-  static constexpr std::uint32_t kTakeAtOnce = 64;
+  static constexpr std::uint32_t kTakeAtOnce = 8;
 
   static void on_data(dds_entity_t reader, void* self) {
     static_cast<StreamReader*>(self)->take_all(reader);
