@@ -25,14 +25,12 @@ vision::PixelPoint pixel_near(const calibration::PlaneMap& map, const Eigen::Vec
 
 MarkerPose pose_from_markers(const vision::RobotObservation& observation,
                              const vision::MarkerLayout& layout, const calibration::PlaneMap& map,
-                             const DiscCovariances& covariances_px2) {
+                             const DiscCovariances& covariances_m2) {
   std::array<PlaneMarker, vision::kMaxDiscs> markers;
   const auto count = static_cast<std::size_t>(observation.disc_count);
   for (std::size_t i = 0; i < count; ++i) {
-    const vision::PixelPoint& pixel = observation.discs[i].centre_px;
-    const Eigen::Matrix2d jacobian = map.jacobian_m_per_px(pixel);
-    markers[i].position_world_m = map.plane_from_pixel(pixel);
-    markers[i].covariance_m2 = jacobian * covariances_px2[i] * jacobian.transpose();
+    markers[i].position_world_m = map.plane_from_pixel(observation.discs[i].centre_px);
+    markers[i].covariance_m2 = covariances_m2[i];
     // Disc 0 is the centre disc, at the robot's origin.
     if (i > 0) markers[i].position_robot_m = layout.outer[i - 1].position_robot_m;
   }

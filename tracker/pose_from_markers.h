@@ -10,7 +10,8 @@
 
 namespace nadir::tracker {
 
-/// Covariance of each disc's centre in the image, px^2, in the order of RobotObservation::discs.
+/// Covariance of each disc's place on the plane, m^2, in the order of RobotObservation::discs,
+/// without the calibration's own part.
 using DiscCovariances = std::array<Eigen::Matrix2d, vision::kMaxDiscs>;
 
 /// A robot's pose as one frame shows it.
@@ -26,7 +27,7 @@ struct MarkerPose {
 /// is as good as any.
 ///
 /// The covariance has three parts:
-///  - the discs' own errors J C J^T, independent of each other, through the least-squares fit
+///  - the discs' own errors, independent of each other, through the least-squares fit
 ///  (rigid_fit.h);
 ///  - inflation by chi^2 per degree of freedom where the residuals are larger than those errors
 ///  explain (Birge's
@@ -38,6 +39,6 @@ struct MarkerPose {
 ///    block at the end.
 MarkerPose pose_from_markers(const vision::RobotObservation& observation,
                              const vision::MarkerLayout& layout, const calibration::PlaneMap& map,
-                             const DiscCovariances& covariances_px2);
+                             const DiscCovariances& covariances_m2);
 
 }  // namespace nadir::tracker

@@ -119,7 +119,10 @@ void append_json(const FrameReport& report, fmt::memory_buffer& line) {
     if (i > 0) put(line, ", ");
     put_rejection(line, report.rejected[i]);
   }
-  put(line, "]}}");
+  put(line, "]");
+  if (report.rejected_not_listed > 0)
+    put(line, ", \"rejected_not_listed\": {}", report.rejected_not_listed);
+  put(line, "}}");
 }
 
 PoseLog::PoseLog(const std::filesystem::path& file) {

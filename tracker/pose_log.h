@@ -19,8 +19,9 @@ namespace nadir::tracker {
 ///                  240.2, "pixels": [55, 48], "confidence": 0.98}],
 ///      "rejected": [{"u_px": 1.0, "v_px": 2.0, "reason": "no heading marker"}]}
 ///
-/// Poses have 9 decimals (1 nm, 1 nrad), covariances 10 significant digits, pixels 4 decimals. A
-/// number that is not finite is written as null, as JSON knows no other.
+/// and "rejected_not_listed": n behind it where there were too many to list. Poses have 9 decimals
+/// (1 nm, 1 nrad), covariances 10 significant digits, pixels 4 decimals. A number that is not
+/// finite is written as null, as JSON knows no other.
 void append_json(const FrameReport& report, fmt::memory_buffer& line);
 
 /// A file of JSON lines, one for each frame, also where no robot is seen. Several cameras may share

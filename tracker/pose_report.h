@@ -46,6 +46,7 @@ struct FrameReport {
   StageTimes stages;
   std::vector<RobotReport> robots;
   std::vector<RejectionReport> rejected;
+  std::int64_t rejected_not_listed = 0;  ///< further ones, of which only the number is known
 };
 
 }  // namespace nadir::tracker

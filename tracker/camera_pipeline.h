@@ -1,0 +1,81 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calibration/calibration_file.h"
+#include "calibration/pixel_count_variance.h"
+#include "tracker/pose_from_markers.h"
+#include "tracker/pose_report.h"
+#include "tracker/robot_tracks.h"
+#include "vision/colour_classes.h"
+#include "vision/disc_pattern_detector.h"
+#include "vision/frame.h"
+#include "vision/marker_layout.h"
+
+namespace nadir::tracker {
+
+/// Everything that makes poses of one camera's frames.
+struct PipelineSetup {
+  std::string camera;  ///< its name
+  calibration::Calibration calibration;
+  std::filesystem::path calibration_file;  ///< for messages
+  std::vector<vision::MarkerLayout>
+      layouts;  ///< at least one; no team of two layouts has the same name
+  vision::ColourClasses colours = vision::default_colour_classes();
+  calibration::PixelCountVariance variance;
+  TrackSettings tracks;
+};
+
+/// The story of a frame: detector (one for each layout), plane map, variance, identity, report.
+/// Knows of other frames only who is who. Not thread-safe: one for each camera.
+class CameraPipeline {
+ public:
+  /// Throws InputError if a team's name is in two layouts or a layout's discs are too small to be
+  /// seen.
+  explicit CameraPipeline(PipelineSetup setup);
+
+  /// Fills `report` (what it held before does not matter). `read_us` is the time that reading the
+  /// frame took. Throws InputError if the frame is not of the pipeline's size. Allocates nothing
+  /// once its lists have grown.
+  void process(const vision::Frame& frame, double read_us, FrameReport& report);
+
+  const PipelineSetup& setup() const { return setup_; }
+
+ private:
+  // One layout's detector and what it saw in this frame.
+  struct Eye {
+    vision::DiscPatternDetector detector;
+    vision::DetectionResult seen;
+    int first_kind = 0;  // of the layout's teams, for RobotTracks
+  };
+  // A robot in this frame; the observation lives in its eye.
+  struct Sighting {
+    std::size_t layout = 0;
+    const vision::RobotObservation* observation = nullptr;
+    MarkerPose pose;
+    bool shares_disc = false;
+  };
+
+  void check_size(const vision::Frame& frame) const;
+  void detect(const vision::Frame& frame);
+  void locate(FrameReport& report);
+  bool measure_discs(const vision::RobotObservation& robot, DiscCovariances& covariances_m2) const;
+  void settle_shared_discs(FrameReport& report);
+  void identify(vision::CaptureTime capture_time, FrameReport& report);
+  void report_rejected(FrameReport& report) const;
+  RobotReport robot_report(const Sighting& sighting, int id) const;
+
+  const calibration::PlaneMap& map() const { return setup_.calibration.map; }
+
+  PipelineSetup setup_;
+  int width_px_;
+  int height_px_;
+  std::vector<Eye> eyes_;
+  RobotTracks tracks_;
+  std::vector<Sighting> sightings_;
+  std::vector<TrackCandidate> candidates_;
+};
+
+}  // namespace nadir::tracker

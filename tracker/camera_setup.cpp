@@ -1,0 +1,65 @@
+#include "tracker/camera_setup.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tracker/wire/wire_types.h"
+#include "vision/colour_file.h"
+#include "vision/input/input_error.h"
+
+namespace nadir::tracker {
+namespace {
+
+calibration::PixelCountVariance variance_of(const CameraConfig& config) {
+  if (!config.noise.empty()) return calibration::load_pixel_count_variance(config.noise);
+  if (config.variance == VarianceModel::kLaw) {
+    return calibration::PixelCountVariance(calibration::LawVariance{});
+  }
+  return calibration::PixelCountVariance(calibration::DropOutVariance{});
+}
+
+void check_teams(const vision::MarkerLayout& layout, const std::filesystem::path& file) {
+  for (const vision::Team& team : layout.teams) {
+    if (team.name.size() <= kMaxTeamLength) continue;
+    throw vision::InputError(
+        {file.string(), 0, 0},
+        fmt::format("team name '{}' has {} letters", team.name, team.name.size()),
+        fmt::format("use at most {}", kMaxTeamLength));
+  }
+}
+
+}  // namespace
+
+PipelineSetup load_pipeline_setup(const CameraConfig& config, const TrackSettings& tracks) {
+  PipelineSetup setup{.camera = config.name,
+                      .calibration = calibration::load_calibration(config.calibration),
+                      .calibration_file = config.calibration,
+                      .layouts = {},
+                      .colours = vision::default_colour_classes(),
+                      .variance = variance_of(config),
+                      .tracks = tracks};
+  for (const std::filesystem::path& file : config.layouts) {
+    setup.layouts.push_back(vision::load_marker_layout(file));
+    check_teams(setup.layouts.back(), file);
+  }
+  if (!config.colours.empty()) setup.colours = vision::load_colour_classes(config.colours);
+  return setup;
+}
+
+std::vector<std::string> setup_warnings(const PipelineSetup& setup) {
+  constexpr double kSameHeight_m = 0.001;
+  std::vector<std::string> warnings;
+  for (const vision::MarkerLayout& layout : setup.layouts) {
+    if (std::abs(layout.height_m - setup.calibration.height_m) <= kSameHeight_m) continue;
+    warnings.push_back(
+        fmt::format("{}: warning: the markers of layout '{}' are {:g} m high, but {} was made for "
+                    "{:g} m; positions are "
+                    "off towards the image border; calibrate with points at the markers' height",
+                    setup.camera, layout.name, layout.height_m, setup.calibration_file.string(),
+                    setup.calibration.height_m));
+  }
+  return warnings;
+}
+
+}  // namespace nadir::tracker

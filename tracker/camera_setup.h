@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tracker/camera_pipeline.h"
+#include "tracker/tracker_config.h"
+
+namespace nadir::tracker {
+
+/// Reads the files that a camera's configuration names. Throws InputError with the file and line of
+/// what is wrong.
+PipelineSetup load_pipeline_setup(const CameraConfig& config, const TrackSettings& tracks);
+
+/// What a person should know of a setup although it works, one line each: layouts whose markers are
+/// not at the height for which the calibration was made.
+std::vector<std::string> setup_warnings(const PipelineSetup& setup);
+
+}  // namespace nadir::tracker

@@ -1,0 +1,141 @@
+#include "tracker/tracker_server.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+#include "tracker/camera_setup.h"
+#include "vision/sources/open_source.h"
+
+namespace nadir::tracker {
+namespace {
+
+constexpr std::size_t kQueueLength = 8;
+constexpr std::chrono::milliseconds kPollInterval{50};
+
+std::int64_t wall_clock_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+TrackerServer::TrackerServer(const TrackerConfig& config, Console& console)
+    : config_(config), console_(console), queue_(kQueueLength) {
+  const bool draws = !config_.overlay.empty();
+  CameraThread::Shared shared{.console = &console_,
+                              .publisher = nullptr,
+                              .queue = &queue_,
+                              .pace = config_.effective_pace(),
+                              .keep_images = draws};
+  std::vector<PipelineSetup> setups;
+  for (const CameraConfig& camera : config_.cameras) {
+    setups.push_back(load_pipeline_setup(camera, config_.tracks));
+    for (const std::string& warning : setup_warnings(setups.back())) console_.line(warning);
+  }
+  if (config_.publish) {
+    publisher_.emplace(WireOptions{static_cast<std::uint32_t>(config_.domain), config_.partition},
+                       static_cast<std::uint64_t>(wall_clock_ns()));
+    shared.publisher = &*publisher_;
+  }
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    if (draws) overlays_.emplace_back(setups[i].calibration.map, setups[i].layouts);
+    vision::SourceOptions options;
+    options.rate_hz = config_.cameras[i].rate_hz;
+    cameras_.push_back(std::make_unique<CameraThread>(
+        i, vision::open_source(config_.cameras[i].source, options), std::move(setups[i]), shared));
+  }
+  if (draws) std::filesystem::create_directories(config_.overlay);
+  if (!config_.poses.empty()) log_.emplace(config_.poses);
+}
+
+TrackerServer::~TrackerServer() = default;
+
+int TrackerServer::run(const std::atomic<bool>& stop) {
+  for (const auto& camera : cameras_) camera->start();
+  consume(stop);
+  console_.end_progress();
+  for (const auto& camera : cameras_) camera->join();
+  return finish(stop.load());
+}
+
+void TrackerServer::consume(const std::atomic<bool>& stop) {
+  FinishedFrame frame;
+  while (true) {
+    // An error of one camera ends the others, too.
+    if (stop.load() ||
+        std::ranges::any_of(cameras_, [](const auto& each) { return each->has_failed(); })) {
+      for (const auto& camera : cameras_) camera->request_stop();
+    }
+    // Asked before the queue is: what a camera hands over before it is done is not missed.
+    const bool over = all_done();
+    if (queue_.pop(frame, over ? std::chrono::milliseconds(0) : kPollInterval)) {
+      write(frame);
+    } else if (over) {
+      return;
+    } else if (log_) {
+      log_->flush();
+    }
+  }
+}
+
+bool TrackerServer::all_done() const {
+  return std::ranges::all_of(cameras_, [](const auto& camera) { return camera->is_done(); });
+}
+
+void TrackerServer::write(const FinishedFrame& frame) {
+  ++written_frames_;
+  if (log_ && !log_->write(frame.report)) {
+    throw std::runtime_error(fmt::format("{}: cannot be written (disk full, or its reader is gone)",
+                                         config_.poses.string()));
+  }
+  if (!overlays_.empty()) write_overlay(frame);
+  show_progress(frame.report);
+}
+
+void TrackerServer::write_overlay(const FinishedFrame& frame) {
+  const std::string prefix = cameras_.size() > 1 ? frame.report.camera + "_" : "";
+  const auto file = config_.overlay / fmt::format("{}{:06}.png", prefix, frame.report.frame);
+  if (!cv::imwrite(file.string(), overlays_[frame.camera].draw(frame.image, frame.report))) {
+    throw std::runtime_error(file.string() + ": cannot be written");
+  }
+}
+
+void TrackerServer::show_progress(const FrameReport& report) {
+  std::uint64_t held_back = 0;
+  if (!progress_limit_.admit(std::chrono::steady_clock::now(), held_back)) return;
+  console_.progress(fmt::format("{} frames   {}: frame {}, {} robots, {:.2f} ms", written_frames_,
+                                report.camera, report.frame, report.robots.size(),
+                                1e-3 * report.stages.total_us));
+}
+
+int TrackerServer::finish(bool stopped) {
+  bool saw_something = true;
+  for (const auto& camera : cameras_) {
+    console_.line(camera->statistics().summary(camera->setup().camera));
+    saw_something = saw_something && camera->statistics().frames() > 0;
+  }
+  if (publisher_) {
+    const PoseWriter::Status status = publisher_->status();
+    console_.line(
+        fmt::format("published {} poses and {} frames on domain {}; {} refused, {} failed",
+                    status.published_poses, status.published_frames, config_.domain, status.refused,
+                    status.failed));
+  }
+  if (queue_.dropped() > 0) {
+    console_.line(fmt::format(
+        "{} frames were dropped before they were written: files are slower than the camera",
+        queue_.dropped()));
+  }
+  if (log_ && !log_->flush())
+    throw std::runtime_error(config_.poses.string() + ": cannot be written");
+  if (saw_something || stopped) return 0;
+  console_.line("a camera brought no frame that could be read");
+  return 1;
+}
+
+}  // namespace nadir::tracker
