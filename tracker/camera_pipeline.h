@@ -20,21 +20,20 @@ namespace nadir::tracker {
 struct PipelineSetup {
   std::string camera;  ///< its name
   calibration::Calibration calibration;
-  std::filesystem::path calibration_file;  ///< for messages
-  std::vector<vision::MarkerLayout>
-      layouts;  ///< at least one; no team of two layouts has the same name
+  std::filesystem::path calibration_file;     ///< for messages
+  std::vector<vision::MarkerLayout> layouts;  ///< at least one, with different team names
   vision::ColourClasses colours = vision::default_colour_classes();
-  calibration::PixelCountVariance variance;
-  TrackSettings tracks;
+  calibration::PixelCountVariance variance = {};
+  TrackSettings tracks = {};
 };
 
 /// The story of a frame: detector (one for each layout), plane map, variance, identity, report.
 /// Knows of other frames only who is who. Not thread-safe: one for each camera.
 class CameraPipeline {
  public:
-  /// Throws InputError if a team's name is in two layouts or a layout's discs are too small to be
-  /// seen.
-  explicit CameraPipeline(PipelineSetup setup);
+  /// For frames of this size. Throws InputError if it is not the calibration's, if a team's name is
+  /// in two layouts, or if a layout's discs are too small to be seen.
+  CameraPipeline(PipelineSetup setup, int width_px, int height_px);
 
   /// Fills `report` (what it held before does not matter). `read_us` is the time that reading the
   /// frame took. Throws InputError if the frame is not of the pipeline's size. Allocates nothing

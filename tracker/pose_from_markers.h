@@ -27,16 +27,13 @@ struct MarkerPose {
 /// is as good as any.
 ///
 /// The covariance has three parts:
-///  - the discs' own errors, independent of each other, through the least-squares fit
-///  (rigid_fit.h);
+///  - the discs' own errors, independent of each other, through the least-squares fit;
 ///  - inflation by chi^2 per degree of freedom where the residuals are larger than those errors
-///  explain (Birge's
-///    ratio): something that the variances do not know of disturbed the discs. Small residuals
-///    never deflate it;
-///  - the calibration's error. It varies over the field and not over one robot, so all discs are
-///  shifted together:
-///    more discs do not average it down and the heading does not feel it. It is added to the x, y
-///    block at the end.
+///    explain (Birge's ratio): something disturbed the discs that the variances do not know of.
+///    Small residuals never deflate it;
+///  - the calibration's error. It varies over the field and not over one robot: all discs are
+///    shifted together, more discs do not average it down, and the heading does not feel it. So it
+///    is added to the x, y block at the end.
 MarkerPose pose_from_markers(const vision::RobotObservation& observation,
                              const vision::MarkerLayout& layout, const calibration::PlaneMap& map,
                              const DiscCovariances& covariances_m2);

@@ -39,22 +39,19 @@ struct TrackSettings {
 ///
 /// A track is a body that is followed; what is read on it are votes.
 ///  - A candidate continues a track of its kind by greedy choice of the nearest pair, pairs of
-///  equal number first.
-///    (Greedy, as an optimal sum could give up a certain pair for two poor ones; both agree unless
-///    two robots are within each other's reach.) Reach is the speed limit plus three sigma from
-///    where the track was last; distance counts from where its last motion puts it. A candidate
-///    whose reading differs from the track's number continues it only at the same place, where no
-///    second robot has room.
+///  equal
+///    number first. (An optimal sum could give up a certain pair for two poor ones; both choices
+///    agree unless two robots are within each other's reach.) Reach is the speed limit plus three
+///    sigma from where the track was last; distance counts from where its motion puts it now. A
+///    candidate whose reading differs from the track's number continues it only at the same place,
+///    where no second robot has room.
 ///  - A number that is read is reported at once. Only an established track (three equal readings)
-///  has a say
-///    against a reading: a frame that reads another number keeps the voted one, until the other has
-///    more votes (four equal frames). It has no say where its own number is read elsewhere in this
-///    frame: then the robots were moved, and the readings are right.
-///  - A number is reported once per frame: of two claims the one wins whose established track had
-///  the number
-///    when it was last seen, then the more confident, then the first.
-///  - Anonymous robots get the lowest number that is free; a number rests for ten seconds before it
-///  is used again.
+///    has a say against a reading: it keeps its number while single frames read another, until the
+///    other has more votes (four equal frames). It has no say where its own number is read
+///    elsewhere in this frame: then the robots were moved, and the readings are right.
+///  - A number is reported once per frame. Of two claims the one wins whose established track had
+///    the number when it was last seen, then the more confident, then the first.
+///  - Anonymous robots get the lowest free number; a number rests before it is used again.
 class RobotTracks {
  public:
   explicit RobotTracks(const TrackSettings& settings = {});
