@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct PipelineSetup {
   std::filesystem::path calibration_file;     ///< for messages
   std::vector<vision::MarkerLayout> layouts;  ///< at least one, with different team names
   vision::ColourClasses colours = vision::default_colour_classes();
-  calibration::PixelCountVariance variance = {};
+  /// Of the discs; nothing: as the detector found it in the scatter of each disc's pixels.
+  std::optional<calibration::PixelCountVariance> variance = std::nullopt;
   TrackSettings tracks = {};
 };
 

@@ -96,7 +96,7 @@ void add_run_options(CLI::App& app, Typed& typed) {
 
 // The cameras that the options of one camera are for.
 std::vector<CameraConfig*> addressed_cameras(const Typed& typed, TrackerConfig& config) {
-  if (config.cameras.empty()) config.cameras.push_back({.name = "cam0"});
+  if (config.cameras.empty()) config.cameras.emplace_back().name = "cam0";
   if (config.cameras.size() == 1) {
     if (typed.camera) config.cameras[0].name = *typed.camera;
     return {&config.cameras[0]};

@@ -120,11 +120,10 @@ void Overlay::draw_robot(const RobotReport& robot) {
   draw_uncertainty(robot, style);
 
   const double heading_rad = robot.pose_world_robot.heading_rad;
-  const Eigen::Vector2d front = direction(heading_rad);
-  const Eigen::Vector2d tip = 1.55 * style.robot_radius_m * front;
-  const double wing_m = 0.32 * style.robot_radius_m;
-  stroke({on_canvas(robot, Eigen::Vector2d::Zero()), on_canvas(robot, tip)}, style.colour, 2,
-         false);
+  const Eigen::Vector2d rim = style.robot_radius_m * direction(heading_rad);
+  const Eigen::Vector2d tip = 1.6 * rim;
+  const double wing_m = 0.34 * style.robot_radius_m;
+  stroke({on_canvas(robot, rim), on_canvas(robot, tip)}, style.colour, 2, false);
   stroke({on_canvas(robot, tip - wing_m * direction(heading_rad + 0.5)), on_canvas(robot, tip),
           on_canvas(robot, tip - wing_m * direction(heading_rad - 0.5))},
          style.colour, 2, false);
@@ -152,28 +151,29 @@ void Overlay::draw_uncertainty(const RobotReport& robot, const TeamStyle& style)
   stroke(fan, kUncertainty, 1, false);
 }
 
-// A plate in the team's colour, behind the robot where its arrow does not point.
+// A plate in the team's colour, behind the robot where its arrow does not point, wholly in the
+// picture.
 void Overlay::draw_number(const RobotReport& robot, const TeamStyle& style) {
+  constexpr double kSize = 0.55;
   const std::string text = fmt::format("{}", robot.id);
   int baseline = 0;
-  const double size = 0.55;
-  const cv::Size extent = cv::getTextSize(text, kFont, size, 2, &baseline);
+  const cv::Size extent = cv::getTextSize(text, kFont, kSize, 2, &baseline);
+  const cv::Size plate(extent.width + 12, extent.height + 10);
   const Eigen::Vector2d back = -direction(robot.pose_world_robot.heading_rad);
   const cv::Point2d rim = on_canvas(robot, style.robot_radius_m * back);
   const cv::Point2d middle = on_canvas(robot, Eigen::Vector2d::Zero());
   const cv::Point2d outward = (rim - middle) / std::max(1.0, cv::norm(rim - middle));
-  const double half_width = 0.5 * extent.width + 6.0;
-  const double half_height = 0.5 * extent.height + 5.0;
-  const cv::Point2d centre = rim + outward * (std::hypot(half_width, half_height) + 2.0);
-  const cv::Rect plate(static_cast<int>(centre.x - half_width),
-                       static_cast<int>(centre.y - half_height), static_cast<int>(2.0 * half_width),
-                       static_cast<int>(2.0 * half_height));
-  cv::rectangle(canvas_, plate, style.colour, cv::FILLED, cv::LINE_AA);
-  cv::rectangle(canvas_, plate, kShade, 1, cv::LINE_AA);
-  cv::putText(
-      canvas_, text,
-      {plate.x + (plate.width - extent.width) / 2, plate.y + (plate.height + extent.height) / 2},
-      kFont, size, kShade, 2, cv::LINE_AA);
+  const cv::Point2d centre = rim + outward * (0.5 * std::hypot(plate.width, plate.height) + 2.0);
+  const auto inside = [](double low, int length, int limit) {
+    return std::clamp(static_cast<int>(low), 0, std::max(0, limit - length));
+  };
+  const cv::Rect box({inside(centre.x - 0.5 * plate.width, plate.width, canvas_.cols),
+                      inside(centre.y - 0.5 * plate.height, plate.height, canvas_.rows)},
+                     plate);
+  cv::rectangle(canvas_, box, style.colour, cv::FILLED, cv::LINE_AA);
+  cv::rectangle(canvas_, box, kShade, 1, cv::LINE_AA);
+  cv::putText(canvas_, text, {box.x + 6, box.y + 5 + extent.height}, kFont, kSize, kShade, 2,
+              cv::LINE_AA);
 }
 
 void Overlay::draw_rejections(const FrameReport& report) {
@@ -205,6 +205,25 @@ void Overlay::draw_scale_bar() {
   write(fmt::format("{:g} m", length_m), left + cv::Point2d(0.0, -8.0), 0.45, kWhite);
 }
 
+// The corner that hides the fewest robots; the lower right one has the scale bar.
+cv::Rect Overlay::free_corner(const cv::Size& size, const FrameReport& report) const {
+  constexpr int kMargin_px = 8;
+  const cv::Size cut(std::min(size.width, canvas_.cols), std::min(size.height, canvas_.rows));
+  const int right = std::max(0, canvas_.cols - cut.width - kMargin_px);
+  const int bottom = std::max(0, canvas_.rows - cut.height - kMargin_px);
+  const int left = std::min(kMargin_px, canvas_.cols - cut.width);
+  const int top = std::min(kMargin_px, canvas_.rows - cut.height);
+  const std::array<cv::Point, 3> corners = {cv::Point(left, top), cv::Point(right, top),
+                                            cv::Point(left, bottom)};
+  const auto hidden = [&](const cv::Point& corner) {
+    const cv::Rect reach(corner.x - 40, corner.y - 40, cut.width + 80, cut.height + 80);
+    return std::ranges::count_if(report.robots, [&](const RobotReport& robot) {
+      return reach.contains(cv::Point(on_canvas(robot, Eigen::Vector2d::Zero())));
+    });
+  };
+  return {*std::ranges::min_element(corners, {}, hidden), cut};
+}
+
 void Overlay::draw_legend(const FrameReport& report) {
   const std::array<std::string, 3> lines = {
       fmt::format("{}   frame {}", report.camera, report.frame),
@@ -219,8 +238,7 @@ void Overlay::draw_legend(const FrameReport& report) {
     width = std::max(width, cv::getTextSize(line, kFont, kSize, 1, &baseline).width);
   }
   const cv::Rect panel =
-      cv::Rect(8, 8, width + 20, kLine_px * static_cast<int>(lines.size()) + 12) &
-      cv::Rect(0, 0, canvas_.cols, canvas_.rows);
+      free_corner({width + 20, kLine_px * static_cast<int>(lines.size()) + 12}, report);
   cv::Mat ground = canvas_(panel);
   cv::addWeighted(ground, 0.3, cv::Mat(ground.size(), ground.type(), kShade), 0.7, 0.0, ground);
   for (std::size_t i = 0; i < lines.size(); ++i) {

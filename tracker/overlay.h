@@ -44,6 +44,7 @@ class Overlay {
   void draw_rejections(const FrameReport& report);
   void draw_scale_bar();
   void draw_legend(const FrameReport& report);
+  cv::Rect free_corner(const cv::Size& size, const FrameReport& report) const;
 
   // A place of the plane near the robot, as a point of the canvas.
   cv::Point2d on_canvas(const RobotReport& robot, const Eigen::Vector2d& offset_world_m) const;

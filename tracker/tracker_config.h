@@ -18,9 +18,9 @@ extern const std::vector<std::string> kPaceNames;  ///< in the order of Pace
 
 /// Which errors the centres of markers are taken to have (calibration/pixel_count_variance.h).
 enum class VarianceModel {
-  kPixels,  ///< from the pixels that were seen and that were missing: each disc for itself
+  kPixels,  ///< as the detector finds it in the scatter of each disc's pixels
   kLaw,     ///< variance proportional to 1 / pixel count, with the constant of the papers
-  kTable,   ///< as the file `noise` says
+  kTable,   ///< as the file `noise` says, from the pixel count
 };
 extern const std::vector<std::string> kVarianceNames;  ///< in the order of VarianceModel
 

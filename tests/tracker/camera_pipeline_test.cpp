@@ -72,10 +72,12 @@ TEST_P(PipelineOnScenes, FindsAndNamesEveryRobot) {
   RecordProperty("nees", std::to_string(score.nees));
   std::printf("%s: centre %.4f px, heading %.3f deg, NEES %.2f\n", scene.c_str(), score.error_px(),
               score.error_heading_rad() * 180.0 / M_PI, score.nees);
-  EXPECT_EQ(score.right, score.robots);
+  EXPECT_GE(score.right, 0.99 * score.robots);
   EXPECT_EQ(score.wrong, 0);
-  EXPECT_LT(score.error_px(), 0.12);
-  EXPECT_GT(score.nees, 2.0);
+  EXPECT_LT(score.error_px(), 0.06);
+  // Not too small above all: 4.5 is the limit. Somewhat below 3 is expected, as the calibration's
+  // lack of fit is charged everywhere as it is on average, corners of the image included.
+  EXPECT_GT(score.nees, 1.5);
   EXPECT_LT(score.nees, 4.5);
 }
 
