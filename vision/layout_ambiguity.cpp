@@ -96,6 +96,7 @@ bool looks_like(const Appearance& moved, const Appearance& still, const Permutat
 
 std::optional<std::string> find_ambiguity(const MarkerLayout& layout) {
   std::vector<Disc> discs;
+  discs.reserve(kMaxDiscs);
   for (int i = 0; i < layout.disc_count(); ++i) discs.push_back(layout.disc(i, 0, 0));
   const std::vector<Appearance> robots = appearances(layout);
   for (const Symmetry& symmetry : symmetries(discs)) {

@@ -66,14 +66,24 @@ TEST(OpenSource, SaysThatAFileIsNoCamera) {
             "v4l2:" + file + ": is no video device; nadir keeps trying");
 }
 
+/// A scene of a few pixels: floor and sensor noise.
+std::string small_scene(const ScratchFolder& folder) {
+  return "synthetic:" +
+         folder.write("scene.yaml", "camera: {width_px: 32, height_px: 24, rate_hz: 20}\n")
+             .string();
+}
+
 TEST(OpenSource, OpensASyntheticScene) {
-  const std::string scene = std::string("synthetic:") + NADIR_DATA_DIR + "/scenes/demo.yaml";
+  const ScratchFolder folder;
+  const std::string scene = small_scene(folder);
   Frame frame;
   Frame again;
   Frame other;
-  ASSERT_EQ(open_source(scene)->read(frame).status, ReadStatus::kFrame);
+  const auto source = open_source(scene);
+  EXPECT_FALSE(source->is_live());
+  ASSERT_EQ(source->read(frame).status, ReadStatus::kFrame);
   EXPECT_EQ(frame.number, 0U);
-  EXPECT_EQ(frame.image.type(), CV_8UC3);
+  EXPECT_EQ(frame.image.size(), cv::Size(32, 24));
   ASSERT_EQ(open_source(scene)->read(again).status, ReadStatus::kFrame);
   EXPECT_EQ(cv::norm(frame.image, again.image, cv::NORM_INF), 0.0);
   SourceOptions options;
@@ -83,11 +93,10 @@ TEST(OpenSource, OpensASyntheticScene) {
 }
 
 TEST(OpenSource, RunsASyntheticSceneInRealTime) {
+  const ScratchFolder folder;
   SourceOptions options;
   options.synthetic_in_real_time = true;
-  const std::string scene = std::string("synthetic:") + NADIR_DATA_DIR + "/scenes/demo.yaml";
-  EXPECT_TRUE(open_source(scene, options)->is_live());
-  EXPECT_FALSE(open_source(scene)->is_live());
+  EXPECT_TRUE(open_source(small_scene(folder), options)->is_live());
 }
 
 TEST(OpenSource, SaysThatASceneIsMissing) {

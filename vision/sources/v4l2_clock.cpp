@@ -14,11 +14,11 @@ CaptureTime unix_time_from_monotonic(V4l2System& system, std::chrono::nanosecond
   nanoseconds offset{0};
   for (int i = 0; i < kReadings && best_gap > kTight; ++i) {
     const nanoseconds before = system.monotonic_now();
-    const nanoseconds unix = system.unix_now();
+    const nanoseconds unix_time = system.unix_now();
     const nanoseconds gap = system.monotonic_now() - before;
     if (gap >= best_gap) continue;
     best_gap = gap;
-    offset = unix - (before + gap / 2);
+    offset = unix_time - (before + gap / 2);
   }
   return CaptureTime(monotonic + offset);
 }

@@ -68,7 +68,8 @@ std::optional<V4l2Agreement> try_format(const V4l2Control& control, std::uint32_
   if (request.height_px > 0) pixels.height = static_cast<std::uint32_t>(request.height_px);
   pixels.pixelformat = fourcc;
   pixels.field = V4L2_FIELD_NONE;
-  pixels.bytesperline = 0;
+  pixels.bytesperline = 0;  // this and the next are the driver's to fill
+  pixels.sizeimage = 0;
   if (control(VIDIOC_S_FMT, &format) < 0 || pixels.pixelformat != fourcc) return std::nullopt;
   V4l2Agreement agreement;
   agreement.layout = {fourcc, static_cast<int>(pixels.width), static_cast<int>(pixels.height),

@@ -55,13 +55,13 @@ DecodeStatus convert_raw(std::span<const std::uint8_t> bytes, const V4l2PixelLay
 }  // namespace
 
 std::span<const std::uint32_t> known_fourccs() {
-  static const std::array<std::uint32_t, kFormats.size()> kFourccs = [] {
-    std::array<std::uint32_t, kFormats.size()> fourccs{};
-    std::transform(kFormats.begin(), kFormats.end(), fourccs.begin(),
+  static const std::array<std::uint32_t, kFormats.size()> fourccs = [] {
+    std::array<std::uint32_t, kFormats.size()> all{};
+    std::transform(kFormats.begin(), kFormats.end(), all.begin(),
                    [](const PixelFormat& format) { return format.fourcc; });
-    return fourccs;
+    return all;
   }();
-  return kFourccs;
+  return fourccs;
 }
 
 std::string fourcc_text(std::uint32_t fourcc) {
