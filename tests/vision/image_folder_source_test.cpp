@@ -23,7 +23,7 @@ class ImageFolderSource : public testing::Test {
   }
   ImageFolder open() const { return ImageFolder(folder_.path(), 50.0, kStart); }
   std::string open_error() const {
-    const std::string line = input_error_line([this] { open(); });
+    std::string line = input_error_line([this] { open(); });
     const std::size_t at = line.find(folder_.path().string());
     if (at != 0) return line;
     return line.substr(std::min(line.size(), folder_.path().string().size() + 1));
