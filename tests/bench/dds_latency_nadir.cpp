@@ -57,10 +57,7 @@ void send_poses(const Load& load, std::uint32_t domain) {
   while (writer.status().matched_pose_readers == 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  std::vector<tracker::WirePose> poses;
-  for (int robot = 0; robot < load.robots; ++robot) {
-    poses.push_back(test::test_pose(1, 0, robot));
-  }
+  std::vector<tracker::WirePose> poses(static_cast<std::size_t>(load.robots));
   const auto period = std::chrono::duration_cast<SteadyClock::duration>(
       std::chrono::duration<double>(1.0 / load.rate_hz));
   const auto frames = static_cast<std::uint64_t>((load.seconds + 0.5) * load.rate_hz);

@@ -40,7 +40,10 @@ std::vector<std::string> merged(const ChildProcess::Environment& additions) {
     const std::string_view line(*entry);
     if (!additions.contains(std::string(line.substr(0, line.find('='))))) lines.emplace_back(line);
   }
-  for (const auto& [name, value] : additions) lines.push_back(name + "=" + value);
+  for (const auto& [name, value] : additions) {
+    lines.push_back(name);
+    lines.back().append("=").append(value);
+  }
   return lines;
 }
 
