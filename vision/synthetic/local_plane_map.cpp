@@ -7,7 +7,9 @@ namespace {
 
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
-constexpr double kNodes[5] = {-1.0, -0.5, 0.0, 0.5, 1.0};
+// Chebyshev nodes: the error is spread evenly over the rectangle.
+constexpr double kNodes[5] = {-0.95105651629515357, -0.58778525229247314, 0.0, 0.58778525229247314,
+                              0.95105651629515357};
 
 /// Turns values at the nodes into coefficients of powers.
 Matrix5 coefficients_from_nodes() {

@@ -7,9 +7,9 @@
 namespace nadir::vision {
 
 /// The inverse of a camera on a plane over a small rectangle of the image, as a polynomial of order
-/// 4 in u and in v through 25 exact points: cheap to evaluate along a row, and within 1e-3 px of
-/// the exact map over rectangles of some 100 px even for wide lenses (cubic distortion is met
-/// exactly up to its square).
+/// 4 in u and in v through 25 exact points: cheap to evaluate along a row. Within 1e-3 px of the
+/// exact map over rectangles of 64 px even in the corners of a strongly distorting lens; the error
+/// grows with the fifth power of the size.
 class LocalPlaneMap {
  public:
   /// Coefficients of t^0 to t^4 of the plane's x and y along one image row.
