@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/vision/synthetic_test_scenes.h"
+#include "vision/input/input_error.h"
 #include "vision/synthetic/recording.h"
 #include "vision/synthetic/renderer.h"
 #include "vision/synthetic/synthetic_source.h"
@@ -181,9 +182,10 @@ TEST(Renderer, RefusesWhatItCannotShow) {
   EXPECT_THROW(Renderer(scene, 1), std::invalid_argument);
   scene = good;
   scene.random_robots.push_back({0, {0}, 200, 4.0, 0.3, true});
-  Renderer crowded(scene, 1);
-  cv::Mat bgr;
-  EXPECT_THROW(crowded.render(0, bgr), std::invalid_argument);
+  EXPECT_THROW(Renderer(scene, 1), std::invalid_argument);
+  scene = good;
+  scene.robots.push_back({0, 1, 0, {}});
+  EXPECT_THROW(Renderer(scene, 1), std::invalid_argument);
 }
 
 TEST(SyntheticSource, DeliversTheScenesFramesAndEnds) {
@@ -206,6 +208,12 @@ TEST(SyntheticSource, DeliversTheScenesFramesAndEnds) {
   source.seek(2);
   ASSERT_EQ(source.read(frame).status, ReadStatus::kFrame);
   EXPECT_TRUE(same(last, frame.image));
+}
+
+TEST(SyntheticSource, RefusesASceneThatCannotBeShown) {
+  Scene scene = plain_scene(lone_disc_layout(0.02));
+  scene.bodies.clear();
+  EXPECT_THROW(SyntheticSource(scene, 1), InputError);
 }
 
 TEST(SyntheticSource, InRealTimeStampsFramesWithTheWallClock) {

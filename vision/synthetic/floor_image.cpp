@@ -13,7 +13,7 @@ namespace nadir::vision {
 namespace {
 
 constexpr std::uint64_t kTexturePurpose = 4;
-constexpr int kTile_px = 64;
+constexpr int kTilePx = 64;
 
 /// Smooth noise of unit RMS with features about `grain_px` wide.
 cv::Mat smooth_noise(cv::Size size, double grain_px, RandomStream& random) {
@@ -101,10 +101,10 @@ cv::Mat floor_image(const Scene& scene, const CameraModel& camera, std::uint64_t
   }
   // A pixel's own square adds a variance of 1/12.
   const double sigma_px = std::hypot(scene.point_spread_px, std::sqrt(1.0 / 12.0));
-  for (int v = 0; v < size.height && !scene.floor.lines.empty(); v += kTile_px) {
-    for (int u = 0; u < size.width; u += kTile_px) {
-      const cv::Rect tile = cv::Rect(u, v, kTile_px, kTile_px) & cv::Rect({0, 0}, size);
-      const LocalPlaneMap map(camera, 0.0, {u, v}, {u + kTile_px, v + kTile_px});
+  for (int v = 0; v < size.height && !scene.floor.lines.empty(); v += kTilePx) {
+    for (int u = 0; u < size.width; u += kTilePx) {
+      const cv::Rect tile = cv::Rect(u, v, kTilePx, kTilePx) & cv::Rect({0, 0}, size);
+      const LocalPlaneMap map(camera, 0.0, {u, v}, {u + kTilePx, v + kTilePx});
       if (!map.valid()) continue;
       for (const FloorLine& line : scene.floor.lines) {
         paint_line(line, camera, map, tile, sigma_px, scene.floor.line_colour, image);

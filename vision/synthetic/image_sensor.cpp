@@ -9,11 +9,12 @@ namespace {
 
 constexpr int kTableSize = 1 << 18;
 constexpr int kRun = 128;
+constexpr float kHalf = 0.5F;  // added before a cast it rounds, and vectorises as lround does not
 constexpr std::uint64_t kTableSeed = 20100419;
 
 /// Standard normal numbers of exactly zero mean and unit variance.
 const std::vector<float>& normal_table() {
-  static const std::vector<float> kTable = [] {
+  static const std::vector<float> numbers = [] {
     std::vector<float> table(kTableSize);
     RandomStream random(kTableSeed);
     double sum = 0.0;
@@ -28,7 +29,7 @@ const std::vector<float>& normal_table() {
     for (float& value : table) value = static_cast<float>((value - mean) * scale);
     return table;
   }();
-  return kTable;
+  return numbers;
 }
 
 std::array<int, 4> channels_of(SceneSensor::Mosaic mosaic) {
@@ -116,13 +117,13 @@ void ImageSensor::quantise(int count, std::uint8_t* samples) const {
     for (int i = 0; i < count; ++i) {
       const float low = row_[i] > 0.0F ? row_[i] : 0.0F;
       const float grey = low < 255.0F ? low : 255.0F;
-      samples[i] = static_cast<std::uint8_t>(static_cast<int>(grey + 0.5F));
+      samples[i] = static_cast<std::uint8_t>(static_cast<int>(grey + kHalf));
     }
     return;
   }
   for (int i = 0; i < count; ++i) {
     const float grey = std::clamp(row_[i], 0.0F, 255.0F);
-    samples[i] = gamma_table_[static_cast<int>(grey * 257.0F + 0.5F)];
+    samples[i] = gamma_table_[static_cast<int>(grey * 257.0F + kHalf)];
   }
 }
 

@@ -26,7 +26,7 @@ Matrix5 coefficients_from_nodes() {
 LocalPlaneMap::LocalPlaneMap(const CameraModel& camera, double plane_height_m,
                              const PixelPoint& low_px, const PixelPoint& high_px)
     : centre_px_(0.5 * (low_px + high_px)), half_px_(0.5 * (high_px - low_px)) {
-  static const Matrix5 kFromNodes = coefficients_from_nodes();
+  static const Matrix5 from_nodes = coefficients_from_nodes();
   Matrix5 values[2];
   for (int i = 0; i < 5; ++i) {
     for (int j = 0; j < 5; ++j) {
@@ -37,7 +37,7 @@ LocalPlaneMap::LocalPlaneMap(const CameraModel& camera, double plane_height_m,
       values[1](i, j) = place.y();
     }
   }
-  for (int k = 0; k < 2; ++k) coefficients_[k] = kFromNodes * values[k] * kFromNodes.transpose();
+  for (int k = 0; k < 2; ++k) coefficients_[k] = from_nodes * values[k] * from_nodes.transpose();
 }
 
 LocalPlaneMap::RowPolynomial LocalPlaneMap::row(double v_px) const {

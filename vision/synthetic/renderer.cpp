@@ -12,7 +12,7 @@ namespace nadir::vision {
 namespace {
 
 constexpr std::uint64_t kNoisePurpose = 5;
-constexpr std::int64_t kEpoch_ns = 1'700'000'000'000'000'000;
+constexpr std::int64_t kEpochNs = 1'700'000'000'000'000'000;
 
 Sprite clutter_sprite(const ClutterDisc& clutter) {
   const auto colour = static_cast<std::size_t>(clutter.colour);
@@ -56,6 +56,7 @@ Renderer::Renderer(Scene scene, std::uint64_t seed)
       light_(scene_.light, camera_.width_px(), camera_.height_px()),
       painter_(camera_, scene_.point_spread_px, scene_.sensor.exposure_s),
       sensor_(scene_.sensor) {
+  for (const RobotPlacement& robot : placements(0)) robot_sprite(robot);  // throws on what is wrong
   make_background();
 }
 
@@ -176,7 +177,7 @@ std::vector<RobotTruth> Renderer::truth_of(std::span<const RobotPlacement> robot
 CaptureTime Renderer::capture_time(std::uint64_t frame_number) const {
   const auto since_start_ns = static_cast<std::int64_t>(
       std::llround(static_cast<double>(frame_number) * 1e9 / scene_.rate_hz));
-  return CaptureTime(std::chrono::nanoseconds(kEpoch_ns + since_start_ns));
+  return CaptureTime(std::chrono::nanoseconds(kEpochNs + since_start_ns));
 }
 
 }  // namespace nadir::vision

@@ -6,8 +6,8 @@
 namespace nadir::vision {
 namespace {
 
-constexpr double kCornerReach_m = 0.05;
-constexpr double kDifferenceStep_s = 1e-3;
+constexpr double kCornerReachM = 0.05;
+constexpr double kDifferenceStepS = 1e-3;
 
 double wrapped(double angle_rad) {
   const double angle = std::remainder(angle_rad, 2.0 * std::numbers::pi);
@@ -39,7 +39,7 @@ Eigen::Vector2d on_polyline(const RobotPath& path, double way_m) {
 double direction_on_polyline(const RobotPath& path, double way_m) {
   Eigen::Vector2d chord;
   if (path.closed) {
-    chord = on_polyline(path, way_m + kCornerReach_m) - on_polyline(path, way_m - kCornerReach_m);
+    chord = on_polyline(path, way_m + kCornerReachM) - on_polyline(path, way_m - kCornerReachM);
   } else {
     chord = path.corners_m.back() - path.corners_m.front();
   }
@@ -71,12 +71,12 @@ PlaceAndHeading place_and_heading(const RobotPath& path, double time_s) {
 
 RobotMotion RobotPath::at(double time_s) const {
   const PlaceAndHeading now = place_and_heading(*this, time_s);
-  const PlaceAndHeading before = place_and_heading(*this, time_s - 0.5 * kDifferenceStep_s);
-  const PlaceAndHeading after = place_and_heading(*this, time_s + 0.5 * kDifferenceStep_s);
-  const Eigen::Vector2d velocity = (after.place_m - before.place_m) / kDifferenceStep_s;
+  const PlaceAndHeading before = place_and_heading(*this, time_s - 0.5 * kDifferenceStepS);
+  const PlaceAndHeading after = place_and_heading(*this, time_s + 0.5 * kDifferenceStepS);
+  const Eigen::Vector2d velocity = (after.place_m - before.place_m) / kDifferenceStepS;
   const double turn_rad = wrapped(after.heading_rad - before.heading_rad);
   return {now.place_m.x(), now.place_m.y(), wrapped(now.heading_rad),
-          velocity.x(),    velocity.y(),    turn_rad / kDifferenceStep_s};
+          velocity.x(),    velocity.y(),    turn_rad / kDifferenceStepS};
 }
 
 }  // namespace nadir::vision

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint64_t kRobotPurpose = 1;
 constexpr std::uint64_t kClutterPurpose = 2;
-constexpr int kTriesPerRobot = 2000;
+constexpr int kTriesPerRobot = 500;
+constexpr int kTriesPerGroup = 20;
 
 /// True if a circle on the plane is in the image with `margin_px` to spare.
 bool circle_in_image(const CameraModel& camera, const Eigen::Vector2d& place_m, double height_m,
@@ -67,7 +68,8 @@ class NameDraw {
   std::vector<std::pair<std::size_t, int>> names_;
 };
 
-void add_random_robots(const Scene& scene, const CameraModel& camera, const RandomRobots& wish,
+/// Adds the robots one by one; false if one of them finds no room.
+bool add_random_robots(const Scene& scene, const CameraModel& camera, const RandomRobots& wish,
                        RandomStream& random, std::vector<RobotPlacement>& robots) {
   const MarkerLayout& layout = scene.layouts.at(wish.layout);
   NameDraw names(layout, wish);
@@ -85,9 +87,21 @@ void add_random_robots(const Scene& scene, const CameraModel& camera, const Rand
       robot.motion.x_m = place_m.x();
       robot.motion.y_m = place_m.y();
     }
-    if (!placed) throw std::invalid_argument("the image has no room for that many random robots");
+    if (!placed) return false;
     robots.push_back(robot);
   }
+  return true;
+}
+
+/// An unlucky start can leave no room for the last robot: then all of them are drawn again.
+void add_random_group(const Scene& scene, const CameraModel& camera, const RandomRobots& wish,
+                      RandomStream& random, std::vector<RobotPlacement>& robots) {
+  const std::size_t before = robots.size();
+  for (int attempt = 0; attempt < kTriesPerGroup; ++attempt) {
+    if (add_random_robots(scene, camera, wish, random, robots)) return;
+    robots.resize(before);
+  }
+  throw std::invalid_argument("the image has no room for that many random robots");
 }
 
 }  // namespace
@@ -102,7 +116,7 @@ std::vector<RobotPlacement> placements_in_frame(const Scene& scene, const Camera
   for (std::size_t i = 0; i < scene.random_robots.size(); ++i) {
     const RandomRobots& wish = scene.random_robots[i];
     RandomStream random(seed + i, wish.redraw_every_frame ? frame_number : 0, kRobotPurpose);
-    add_random_robots(scene, camera, wish, random, robots);
+    add_random_group(scene, camera, wish, random, robots);
   }
   return robots;
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t kShadowPurpose = 3;
 constexpr int kProfileSteps = 2048;
 constexpr double kReachInSigmas = 4.5;
-constexpr double kSharpestEdge_px = 0.02;
+constexpr double kSharpestEdgePx = 0.02;
 
 }  // namespace
 
@@ -32,7 +32,7 @@ ShadowEdge::ShadowEdge(const SceneShadow& shadow, double extra_blur_px)
       normal_u_(std::sin(shadow.angle_rad)),
       normal_v_(-std::cos(shadow.angle_rad)),
       factor_(shadow.factor) {
-  const double sigma_px = std::max(std::hypot(shadow.softness_px, extra_blur_px), kSharpestEdge_px);
+  const double sigma_px = std::max(std::hypot(shadow.softness_px, extra_blur_px), kSharpestEdgePx);
   reach_px_ = kReachInSigmas * sigma_px;
   profile_.resize(kProfileSteps + 2);
   for (int i = 0; i < kProfileSteps + 2; ++i) {

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kKernelSigmas = 4.0;
 constexpr int kMostInstants = 32;
-constexpr double kTravelPerInstant_px = 0.25;
-constexpr int kSmallRegion_px = 28;
-constexpr double kSharpOptics_px = 0.35;
+constexpr double kTravelPerInstantPx = 0.25;
+constexpr int kSmallRegionPx = 28;
+constexpr double kSharpOpticsPx = 0.35;
 
 double normal_share(double sigmas) { return 0.5 * std::erfc(-sigmas / std::numbers::sqrt2); }
 
@@ -43,7 +43,7 @@ SpritePainter::SpritePainter(const CameraModel& camera, double point_spread_px, 
 void SpritePainter::set_fineness(int fineness) {
   if (fineness == fineness_) return;
   fineness_ = fineness;
-  taps_.resize((2 * margin_px_ + 1) * fineness);
+  taps_.resize((2 * static_cast<std::size_t>(margin_px_) + 1) * fineness);
   double sum = 0.0;
   for (std::size_t i = 0; i < taps_.size(); ++i) {
     const double offset_px = (static_cast<double>(i) + 0.5) / fineness - 0.5 - margin_px_;
@@ -88,8 +88,7 @@ int SpritePainter::instants_of(const Sprite& sprite) const {
   const double speed_mps = std::hypot(motion.velocity_x_mps, motion.velocity_y_mps) +
                            std::abs(motion.heading_rate_radps) * sprite.extent_m();
   const double travel_px = scale.norm() * speed_mps * exposure_s_;
-  return std::clamp(static_cast<int>(std::ceil(travel_px / kTravelPerInstant_px)), 1,
-                    kMostInstants);
+  return std::clamp(static_cast<int>(std::ceil(travel_px / kTravelPerInstantPx)), 1, kMostInstants);
 }
 
 void SpritePainter::prepare_instants(const Sprite& sprite, const cv::Rect& region) {
@@ -132,8 +131,8 @@ void SpritePainter::paint(const Sprite& sprite, const ShadowEdge* shadow, Sprite
   patch.region_px = region_of(sprite);
   if (patch.region_px.empty()) return;
   const cv::Rect& region = patch.region_px;
-  const bool fine = point_spread_px_ < kSharpOptics_px ||
-                    std::max(region.width, region.height) - 2 * margin_px_ <= kSmallRegion_px;
+  const bool fine = point_spread_px_ < kSharpOpticsPx ||
+                    std::max(region.width, region.height) - 2 * margin_px_ <= kSmallRegionPx;
   set_fineness(fine ? 8 : 4);
   prepare_instants(sprite, region);
   const PixelPoint low(fine_origin_u_px_, fine_origin_v_px_);

@@ -1,9 +1,13 @@
 #include "vision/synthetic/synthetic_source.h"
 
 #include <algorithm>
-#include <cmath>
+#include <exception>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
+
+#include "vision/input/input_error.h"
 
 namespace nadir::vision {
 
@@ -11,8 +15,21 @@ using std::chrono::duration;
 using std::chrono::duration_cast;
 using std::chrono::steady_clock;
 
+namespace {
+
+Renderer renderer_of(Scene scene, std::uint64_t seed) {
+  try {
+    return Renderer(std::move(scene), seed);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({}, std::string("the scene cannot be shown: ") + error.what(),
+                     "change the scene");
+  }
+}
+
+}  // namespace
+
 SyntheticSource::SyntheticSource(Scene scene, std::uint64_t seed, SyntheticPace pace)
-    : renderer_(std::move(scene), seed), pace_(pace) {}
+    : renderer_(renderer_of(std::move(scene), seed)), pace_(pace) {}
 
 void SyntheticSource::seek(std::uint64_t frame_number) {
   next_ = frame_number;
@@ -52,8 +69,11 @@ ReadResult SyntheticSource::read(Frame& frame) {
     frame.capture_time =
         start_wall_ + (renderer_.capture_time(next_) - renderer_.capture_time(first_));
   }
-  renderer_.render(next_, frame.image);
-  ++next_;
+  try {
+    renderer_.render(next_++, frame.image);
+  } catch (const std::exception& error) {  // a frame whose random robots find no room
+    return {ReadStatus::kSkipped, "frame " + std::to_string(frame.number) + ": " + error.what()};
+  }
   return {ReadStatus::kFrame, ""};
 }
 

@@ -19,7 +19,8 @@ enum class SyntheticPace {
 /// A scene as a frame source. It can start and continue at any frame.
 class SyntheticSource : public FrameSource {
  public:
-  /// Ends after Scene::frames frames, never if that is 0. Throws as Renderer does.
+  /// Ends after Scene::frames frames, never if that is 0. Throws InputError for a scene that cannot
+  /// be shown.
   SyntheticSource(Scene scene, std::uint64_t seed, SyntheticPace pace = SyntheticPace::kFastest);
 
   ReadResult read(Frame& frame) override;
