@@ -48,6 +48,7 @@ LawVariance read_law(const YamlMap& file) {
 DropOutVariance read_drop_out(const YamlMap& file) {
   DropOutVariance law;
   law.floor_px = file.number_or("floor_px", law.floor_px, {0.0, 10.0});
+  law.complete_share = file.number_or("complete_share", law.complete_share, {0.01, 1.0});
   law.minimum_pixels = file.number_or("minimum_pixels", law.minimum_pixels, kPixels);
   return law;
 }

@@ -35,8 +35,9 @@ OptionalCovariance covariance(const DropOutVariance& law, const DiscObservation&
                               const Eigen::Matrix2d& jacobian_m_per_px) {
   if (!(disc.pixels >= law.minimum_pixels)) return std::nullopt;
   // r^2/4 (1/N - 1/N0) with r^2 = N0/pi is (N0/N - 1) / (4 pi).
+  const double complete_pixels = law.complete_share * disc.expected_pixels;
   const double drop_out_px2 =
-      std::max(0.0, disc.expected_pixels / disc.pixels - 1.0) / (4.0 * std::numbers::pi);
+      std::max(0.0, complete_pixels / disc.pixels - 1.0) / (4.0 * std::numbers::pi);
   const double variance_px2 = drop_out_px2 + disc.variance_px2 + law.floor_px * law.floor_px;
   return variance_px2 * jacobian_m_per_px * jacobian_m_per_px.transpose();
 }

@@ -35,15 +35,17 @@ struct LawVariance {
 };
 
 /// Random drop-out of pixels (theory 4.1 c), per axis in the image, with r the disc's radius and N0
-/// its full count:
+/// the count of a complete disc:
 ///
-///     r^2      = N0 / pi
+///     N0       = complete_share * expected pixels,   r^2 = N0 / pi
 ///     variance = r^2/4 (1/N - 1/N0) + the detector's own variance_px2 + floor_px^2
 ///
-/// mapped to the plane by the Jacobian. No drop-out where N reaches N0.
+/// mapped to the plane by the Jacobian. No drop-out where N reaches N0: a soft count falls a few
+/// percent short of the disc's area without any pixel lost, and the area is known no better.
 struct DropOutVariance {
   double floor_px = 0.01;
   double minimum_pixels = 5.0;
+  double complete_share = 0.95;  ///< above 0, at most 1
 };
 
 /// How well a disc seen with some number of pixels is placed: a value around one of the three laws.

@@ -96,7 +96,7 @@ TEST(DropOutVariance, AgreesWithMonteCarlo) {
                             Eigen::Vector2d(0.0, 0.0));
         scatter_px2 += (sum / static_cast<double>(found)).squaredNorm() / (2.0 * kRuns);
       }
-      const PixelCountVariance law(DropOutVariance{0.0, 1.0});
+      const PixelCountVariance law(DropOutVariance{0.0, 1.0, 1.0});
       const double predicted_px2 =
           (*law.covariance_m2(seen(static_cast<double>(found), all), kUnit))(0, 0);
       EXPECT_NEAR(predicted_px2 / scatter_px2, 1.0, 0.06) << radius_px << " px, share " << share;
@@ -105,13 +105,18 @@ TEST(DropOutVariance, AgreesWithMonteCarlo) {
 }
 
 TEST(DropOutVariance, AddsTheDetectorsVarianceAndTheFloorThroughTheJacobian) {
-  DiscObservation disc = seen(60.0, 50.0);  // more pixels than expected: nothing dropped out
+  DiscObservation disc = seen(46.0, 50.0);  // more than the complete 45: nothing dropped out
   disc.variance_px2 = 0.0016;
   Eigen::Matrix2d jacobian;
   jacobian << 2e-3, 1e-3, 0.0, -3e-3;
-  const PixelCountVariance law(DropOutVariance{0.03, 5.0});
+  const PixelCountVariance law(DropOutVariance{0.03, 5.0, 0.9});
   const Eigen::Matrix2d expected = 0.0025 * jacobian * jacobian.transpose();
   EXPECT_TRUE(law.covariance_m2(disc, jacobian)->isApprox(expected, 1e-12));
+  // 36 of 45 are left: (45/36 - 1) / (4 pi) px^2 more.
+  disc.pixels = 36.0;
+  const double with_drop_out_px2 = 0.0025 + 0.25 / (4.0 * M_PI);
+  EXPECT_TRUE(law.covariance_m2(disc, jacobian)
+                  ->isApprox(with_drop_out_px2 * jacobian * jacobian.transpose(), 1e-12));
   EXPECT_FALSE(law.covariance_m2(seen(4.9), jacobian).has_value());
 }
 
@@ -138,9 +143,11 @@ TEST_F(NoiseFile, ReadsTheLaws) {
   EXPECT_DOUBLE_EQ(law.floor_m2, 0.0);
   EXPECT_DOUBLE_EQ(law.minimum_pixels, LawVariance{}.minimum_pixels);
   const auto drop_out = std::get<DropOutVariance>(
-      read("nadir_noise: 1\nkind: pixels\nfloor_px: 0.02\nminimum_pixels: 9\n").law());
+      read("nadir_noise: 1\nkind: pixels\nfloor_px: 0.02\ncomplete_share: 0.8\nminimum_pixels: 9\n")
+          .law());
   EXPECT_DOUBLE_EQ(drop_out.floor_px, 0.02);
   EXPECT_DOUBLE_EQ(drop_out.minimum_pixels, 9.0);
+  EXPECT_DOUBLE_EQ(drop_out.complete_share, 0.8);
 }
 
 TEST_F(NoiseFile, RefusesWhatItDoesNotKnow) {
