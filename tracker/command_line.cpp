@@ -9,6 +9,7 @@
 
 #include "tracker/wire/wire_options.h"
 #include "vision/input/input_error.h"
+#include "vision/input/usage_line.h"
 
 namespace nadir::tracker {
 namespace {
@@ -149,6 +150,7 @@ CommandLine parse_command_line(int argc, char** argv) {
   CLI::App app(
       "Finds robots in the frames of cameras that look straight down and publishes their poses.",
       "nadir-tracker");
+  app.failure_message(vision::usage_line);
   app.set_version_flag("--version", std::string("nadir-tracker ") + NADIR_VERSION);
   app.footer(kExample);
   Typed typed;

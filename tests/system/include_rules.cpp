@@ -110,9 +110,10 @@ std::vector<IncludeLine> include_lines(const std::string& text) {
 std::optional<std::string> broken_rule(const std::string& file, const IncludeLine& include) {
   if (is_in_a_room(include.target)) return broken_room_rule(file, include.target);
   if (!include.quoted) return broken_library_rule(file, include.target);
-  // A quoted path outside the rooms is a header that the build makes from the messages'
-  // description.
-  if (include.target.find("..") == std::string::npos && file.starts_with("tracker/wire/")) {
+  // A quoted path outside the rooms is a header that the build makes from a description of
+  // messages.
+  if (include.target.find("..") == std::string::npos &&
+      starts_with_any(file, {"tracker/wire/", "tests/bench/dds_"})) {
     return std::nullopt;
   }
   return "includes \"" + include.target + "\": write the path from the repository root" +

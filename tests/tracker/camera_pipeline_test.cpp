@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <string>
 
-#include "synthetic_setup.h"
+#include "tests/tracker/synthetic_setup.h"
 #include "vision/input/input_error.h"
 
 namespace nadir::tracker {

@@ -7,7 +7,7 @@
 #include <new>
 #include <vector>
 
-#include "synthetic_setup.h"
+#include "tests/tracker/synthetic_setup.h"
 #include "tracker/pose_log.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "synthetic_setup.h"
+#include "tests/tracker/synthetic_setup.h"
 
 #include <filesystem>
 
