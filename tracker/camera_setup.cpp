@@ -62,4 +62,16 @@ std::vector<std::string> setup_warnings(const PipelineSetup& setup) {
   return warnings;
 }
 
+std::string coverage_warning(const PipelineSetup& setup, int width_px, int height_px) {
+  constexpr double kEnough = 0.6;  // of the image's width and height
+  const calibration::Calibration& calibration = setup.calibration;
+  const Eigen::Vector2d covered = calibration.points_box.high_px - calibration.points_box.low_px;
+  const bool covers = covered.x() >= kEnough * width_px && covered.y() >= kEnough * height_px;
+  if (calibration.image_width_px > 0 || covers) return "";
+  return fmt::format(
+      "{}: warning: the points of {} span {:.0f}x{:.0f} px, but frames have {}x{}: is it made for "
+      "images of another size? State it with nadir-calibrate field --image-size",
+      setup.camera, setup.calibration_file.string(), covered.x(), covered.y(), width_px, height_px);
+}
+
 }  // namespace nadir::tracker

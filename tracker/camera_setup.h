@@ -16,4 +16,8 @@ PipelineSetup load_pipeline_setup(const CameraConfig& config, const TrackSetting
 /// not at the height for which the calibration was made.
 std::vector<std::string> setup_warnings(const PipelineSetup& setup);
 
+/// The same for frames of a size that the calibration does not state: its points leave much of the
+/// image out, so it is that of another image size or extrapolates. Empty where all is well.
+std::string coverage_warning(const PipelineSetup& setup, int width_px, int height_px);
+
 }  // namespace nadir::tracker

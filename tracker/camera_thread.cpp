@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "tracker/camera_setup.h"
 #include "vision/input/input_error.h"
 
 namespace nadir::tracker {
@@ -58,9 +59,7 @@ void CameraThread::run(const std::stop_token& stop) {
 void CameraThread::take_frame(double read_us, const std::stop_token& stop) {
   if (!source_->is_live() && shared_.pace == Pace::kRecorded) pace_.wait(frame_.capture_time, stop);
   if (stop.stop_requested()) return;
-  // The first frame shows the size; if it is not the calibration's, nothing can work and the
-  // tracker ends.
-  if (!pipeline_) pipeline_.emplace(setup_, frame_.image.cols, frame_.image.rows);
+  if (!pipeline_) build_pipeline();
   try {
     pipeline_->process(frame_, read_us, finished_.report);
   } catch (const vision::InputError& error) {
@@ -70,6 +69,16 @@ void CameraThread::take_frame(double read_us, const std::stop_token& stop) {
   if (shared_.publisher != nullptr) shared_.publisher->publish(finished_.report);
   statistics_.add(finished_.report);
   hand_over(stop);
+}
+
+// The first frame shows the size; if it is not the calibration's, nothing can work and the tracker
+// ends.
+void CameraThread::build_pipeline() {
+  const int width_px = frame_.image.cols;
+  const int height_px = frame_.image.rows;
+  pipeline_.emplace(setup_, width_px, height_px);
+  const std::string warning = coverage_warning(setup_, width_px, height_px);
+  if (!warning.empty()) shared_.console->line(warning);
 }
 
 void CameraThread::hand_over(const std::stop_token& stop) {

@@ -50,6 +50,7 @@ class CameraThread {
  private:
   void run(const std::stop_token& stop);
   void take_frame(double read_us, const std::stop_token& stop);
+  void build_pipeline();
   void hand_over(const std::stop_token& stop);
   void skip(const std::string& why);
   void tell_away(const std::string& why);

@@ -17,8 +17,9 @@ namespace {
 constexpr int kWrongUsage = 2;
 constexpr const char* kExample =
     "Example:\n"
-    "  nadir-tracker --source data/clips/league --layout data/layouts/league.yaml \\\n"
-    "      --calibration league.yaml --poses poses.jsonl --overlay pictures --no-publish\n"
+    "  nadir-tracker --source data/clips/demo/frames --layout data/layouts/league.yaml \\\n"
+    "      --calibration data/calibrations/demo.yaml --poses poses.jsonl --overlay pictures "
+    "--no-publish\n"
     "SOURCE is a folder of images (capture times from its times.csv, else --rate), a video file,\n"
     "v4l2:/dev/video0 or synthetic:SCENE.yaml.";
 
@@ -45,7 +46,8 @@ struct Typed {
 void add_camera_options(CLI::App& app, Typed& typed) {
   app.add_option("--source", typed.source, "where frames come from")->type_name("SOURCE");
   app.add_option("--layout", typed.layouts, "how robots look; again for each further kind of robot")
-      ->type_name("LAYOUT.yaml");
+      ->type_name("LAYOUT.yaml")
+      ->allow_extra_args(false);
   app.add_option("--calibration", typed.calibration, "pixels to metres, made by nadir-calibrate")
       ->type_name("CAL.yaml");
   app.add_option(
@@ -153,6 +155,7 @@ CommandLine parse_command_line(int argc, char** argv) {
   app.failure_message(vision::usage_line);
   app.set_version_flag("--version", std::string("nadir-tracker ") + NADIR_VERSION);
   app.footer(kExample);
+  app.failure_message(vision::usage_line);
   Typed typed;
   add_camera_options(app, typed);
   add_run_options(app, typed);

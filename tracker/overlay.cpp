@@ -15,7 +15,6 @@ namespace {
 constexpr int kSmallWidth_px = 1000;
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kSubPixelBits = 4;
-constexpr std::size_t kMostReasonsWritten = 24;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 const cv::Scalar kShade(24, 24, 24);
 const cv::Scalar kWhite(255, 255, 255);
@@ -176,18 +175,35 @@ void Overlay::draw_number(const RobotReport& robot, const TeamStyle& style) {
               cv::LINE_AA);
 }
 
+bool Overlay::is_on_robot(const FrameReport& report, const vision::PixelPoint& pixel) const {
+  return std::ranges::any_of(report.robots, [&](const RobotReport& robot) {
+    const Eigen::Vector2d away_m =
+        map_.plane_from_pixel(pixel) - robot.pose_world_robot.position_m();
+    return away_m.norm() < style_of(robot.team).robot_radius_m;
+  });
+}
+
 void Overlay::draw_rejections(const FrameReport& report) {
-  for (std::size_t i = 0; i < report.rejected.size(); ++i) {
-    const RejectionReport& rejection = report.rejected[i];
+  std::vector<cv::Rect> written;
+  for (const RejectionReport& rejection : report.rejected) {
     const cv::Point2d at((rejection.centre_px.x() + 0.5) * enlargement_ - 0.5,
                          (rejection.centre_px.y() + 0.5) * enlargement_ - 0.5);
-    constexpr double kArm_px = 4.0;
+    constexpr double kArm_px = 3.0;
     stroke({at - cv::Point2d(kArm_px, kArm_px), at + cv::Point2d(kArm_px, kArm_px)}, kRejected, 1,
            false);
     stroke({at - cv::Point2d(kArm_px, -kArm_px), at + cv::Point2d(kArm_px, -kArm_px)}, kRejected, 1,
            false);
-    if (i < kMostReasonsWritten)
-      write(rejection.reason, at + cv::Point2d(8.0, 4.0), 0.36, kRejected);
+    // A reason is written where it hides no other and no robot that was found.
+    if (is_on_robot(report, rejection.centre_px)) continue;
+    constexpr double kSize = 0.36;
+    int baseline = 0;
+    const cv::Size extent = cv::getTextSize(rejection.reason, kFont, kSize, 1, &baseline);
+    const cv::Rect box(static_cast<int>(at.x) + 7, static_cast<int>(at.y) - 6, extent.width,
+                       extent.height + 6);
+    const auto overlaps = [&](const cv::Rect& other) { return (box & other).area() > 0; };
+    if (std::ranges::any_of(written, overlaps)) continue;
+    written.push_back(box);
+    write(rejection.reason, at + cv::Point2d(7.0, 4.0), kSize, kRejected);
   }
 }
 

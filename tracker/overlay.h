@@ -37,6 +37,7 @@ class Overlay {
     double robot_radius_m = 0.0;
   };
 
+  bool is_on_robot(const FrameReport& report, const vision::PixelPoint& pixel) const;
   const TeamStyle& style_of(std::string_view team) const;
   void draw_robot(const RobotReport& robot);
   void draw_uncertainty(const RobotReport& robot, const TeamStyle& style);

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <exception>
+#include <string>
 
 #include "tracker/command_line.h"
 #include "tracker/console.h"
@@ -28,10 +29,10 @@ int main(int argc, char** argv) {
     nadir::tracker::TrackerServer server(command.config, console);
     return server.run(g_stop);
   } catch (const nadir::vision::InputError& error) {
-    console.line(error.what());
+    console.line(std::string("nadir-tracker: ") + error.what());
     return 2;
   } catch (const std::exception& error) {
-    console.line(error.what());
+    console.line(std::string("nadir-tracker: ") + error.what());
     return 1;
   }
 }
