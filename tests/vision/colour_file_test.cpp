@@ -12,11 +12,8 @@ TEST(ColourFile, ReplacesTheNamedColoursAndKeepsTheOthers) {
   const ScratchFolder folder;
   const ColourClasses classes =
       load_colour_classes(folder.write("c.yaml", "colours:\n  pink: [150, 70.5, 230]\n"));
-  EXPECT_EQ(classes.of(Colour::kPink).blue, 150.0F);
-  EXPECT_EQ(classes.of(Colour::kPink).green, 70.5F);
-  EXPECT_EQ(classes.of(Colour::kPink).red, 230.0F);
-  const ColourClasses defaults = default_colour_classes();
-  EXPECT_EQ(classes.of(Colour::kBlue).blue, defaults.of(Colour::kBlue).blue);
+  EXPECT_EQ(classes.of(Colour::kPink), Bgr(150.0F, 70.5F, 230.0F));
+  EXPECT_EQ(classes.of(Colour::kBlue), default_colour_classes().of(Colour::kBlue));
 }
 
 TEST(ColourFile, RefusesWhatItDoesNotKnow) {
