@@ -155,7 +155,6 @@ CommandLine parse_command_line(int argc, char** argv) {
   app.failure_message(vision::usage_line);
   app.set_version_flag("--version", std::string("nadir-tracker ") + NADIR_VERSION);
   app.footer(kExample);
-  app.failure_message(vision::usage_line);
   Typed typed;
   add_camera_options(app, typed);
   add_run_options(app, typed);

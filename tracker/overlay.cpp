@@ -13,6 +13,8 @@ namespace nadir::tracker {
 namespace {
 
 constexpr int kSmallWidth_px = 1000;
+constexpr int kOutlinePoints = 72;
+constexpr int kFanSteps = 16;  // to either side
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kSubPixelBits = 4;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
@@ -112,8 +114,10 @@ void Overlay::write(const std::string& text, const cv::Point2d& place, double si
 void Overlay::draw_robot(const RobotReport& robot) {
   const TeamStyle& style = style_of(robot.team);
   std::vector<cv::Point2d> outline;
-  for (int i = 0; i < 72; ++i) {
-    outline.push_back(on_canvas(robot, style.robot_radius_m * direction(2.0 * kPi * i / 72)));
+  outline.reserve(kOutlinePoints);
+  for (int i = 0; i < kOutlinePoints; ++i) {
+    outline.push_back(
+        on_canvas(robot, style.robot_radius_m * direction(2.0 * kPi * i / kOutlinePoints)));
   }
   stroke(outline, style.colour, 2, true);
   draw_uncertainty(robot, style);
@@ -135,16 +139,18 @@ void Overlay::draw_uncertainty(const RobotReport& robot, const TeamStyle& style)
   const Eigen::Matrix2d half_axes_m =
       kOverlaySigmaFactor * axes.eigenvectors() * axes.eigenvalues().cwiseSqrt().asDiagonal();
   std::vector<cv::Point2d> ellipse;
-  for (int i = 0; i < 48; ++i) {
-    ellipse.push_back(on_canvas(robot, half_axes_m * direction(2.0 * kPi * i / 48)));
+  ellipse.reserve(kOutlinePoints);
+  for (int i = 0; i < kOutlinePoints; ++i) {
+    ellipse.push_back(on_canvas(robot, half_axes_m * direction(2.0 * kPi * i / kOutlinePoints)));
   }
   stroke(ellipse, kUncertainty, 1, true);
 
   const double spread_rad =
       std::min(kOverlaySigmaFactor * std::sqrt(robot.covariance(2, 2)), 0.5 * kPi);
   std::vector<cv::Point2d> fan;
-  for (int i = -16; i <= 16; ++i) {
-    const double angle_rad = robot.pose_world_robot.heading_rad + spread_rad * i / 16.0;
+  fan.reserve(2 * kFanSteps + 1);
+  for (int i = -kFanSteps; i <= kFanSteps; ++i) {
+    const double angle_rad = robot.pose_world_robot.heading_rad + spread_rad * i / kFanSteps;
     fan.push_back(on_canvas(robot, 1.25 * style.robot_radius_m * direction(angle_rad)));
   }
   stroke(fan, kUncertainty, 1, false);

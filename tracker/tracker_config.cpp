@@ -59,7 +59,7 @@ CameraConfig read_camera(const YamlMap& map, const fs::path& folder, std::size_t
   camera.rate_hz = map.number_or("rate_hz", camera.rate_hz, kRate_hz);
   camera.colours = resolve(folder, map.text_or("colours", ""));
   camera.noise = resolve(folder, map.text_or("noise", ""));
-  const std::string by_file = kVarianceNames[camera.noise.empty() ? 0 : 2];
+  const std::string& by_file = kVarianceNames[camera.noise.empty() ? 0 : 2];
   camera.variance = variance_from_name(map.choice_or("variance", by_file, kVarianceNames));
   map.finish();
   return camera;
