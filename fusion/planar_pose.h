@@ -12,8 +12,8 @@ inline double wrap_angle(double angle_rad) {
   return wrapped <= -kPi ? kPi : wrapped;
 }
 
-/// Place and direction of a robot on the field. x and y in metres in the world frame, heading counter-clockwise
-/// from the world's x axis, rad, in (-pi, pi].
+/// Place and direction of a robot on the field. x and y in metres in the world frame, heading
+/// counter-clockwise from the world's x axis, rad, in (-pi, pi].
 struct PlanarPose {
   double x_m = 0.0;
   double y_m = 0.0;
