@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Eigenvalues>
+#include <utility>
 #include <vector>
 
 #include "vision/input/strict_yaml.h"
@@ -18,6 +19,7 @@ constexpr int kOrder = 2;
 constexpr int kTerms = polynomial_terms(kOrder);
 constexpr double kMaxHeight_m = 100.0;
 constexpr int kMaxImageSide_px = 100000;
+constexpr int kMaxGridSide = 1000;
 
 template <typename Numbers>
 std::string list(const Numbers& numbers) {
@@ -44,19 +46,46 @@ std::string points_yaml(const Calibration& calibration) {
              residuals.max_px);
 }
 
+/// One number of each node, a line a row of the grid.
+template <typename NumberOf>
+std::string grid_yaml(const char* key, const LackOfFit& lack, NumberOf number_of) {
+  std::string text = fmt::format("    {}: [", key);
+  for (std::size_t i = 0; i < lack.nodes().size(); ++i) {
+    const bool is_row_start = i % static_cast<std::size_t>(lack.columns()) == 0;
+    text += is_row_start ? "\n      " : " ";
+    text += fmt::format("{},", number_of(lack.nodes()[i]));
+  }
+  text.back() = ']';
+  return text + "\n";
+}
+
+std::string lack_of_fit_yaml(const LackOfFit& lack) {
+  return fmt::format(
+             "  # expected error of the map (true minus mapped) and variance about it, on a grid "
+             "of "
+             "pixels\n"
+             "  lack_of_fit:\n    lowest_px: {}\n    highest_px: {}\n    columns: {}\n    rows: "
+             "{}\n",
+             list(lack.box().low_px), list(lack.box().high_px), lack.columns(), lack.rows()) +
+         grid_yaml("error_x_m", lack, [](const auto& node) { return node.error_m.x(); }) +
+         grid_yaml("error_y_m", lack, [](const auto& node) { return node.error_m.y(); }) +
+         grid_yaml("variance_x_m2", lack, [](const auto& node) { return node.variance_m2.x(); }) +
+         grid_yaml("variance_y_m2", lack, [](const auto& node) { return node.variance_m2.y(); });
+}
+
 std::string model_yaml(const PolynomialMap& map) {
   const PolynomialMap::Parameters& p = map.parameters();
   std::string text = fmt::format(
       "# n = (pixel - centre_px) / scale_px; terms 1, u, v, u^2, u v, v^2 of n\n"
-      "polynomial:\n  centre_px: {}\n  scale_px: {}\n  x_m: {}\n  y_m: {}\n  residual_variance_m2: "
+      "polynomial:\n  centre_px: {}\n  scale_px: {}\n  x_m: {}\n  y_m: {}\n  noise_variance_m2: "
       "{}\n"
-      "  lack_of_fit_variance_m2: {}\n  information_inverse:\n",
+      "  information_inverse:\n",
       list(p.centre_px), p.scale_px, list(p.coefficients_m.row(0)), list(p.coefficients_m.row(1)),
-      p.residual_variance_m2, p.lack_of_fit_variance_m2);
+      p.noise_variance_m2);
   for (Eigen::Index row = 0; row < p.information_inverse.rows(); ++row) {
     text += fmt::format("    - {{row: {}}}\n", list(p.information_inverse.row(row)));
   }
-  return text;
+  return text + lack_of_fit_yaml(p.lack_of_fit);
 }
 
 Eigen::Vector2d pair(const YamlMap& map, const std::string& key) {
@@ -110,6 +139,29 @@ PolynomialInformation read_information(const YamlMap& map) {
   return information;
 }
 
+LackOfFit read_lack_of_fit(const YamlMap& map) {
+  const PixelBox box{pair(map, "lowest_px"), pair(map, "highest_px")};
+  const int columns = map.integer("columns", {1, kMaxGridSide});
+  const int rows = map.integer("rows", {1, kMaxGridSide});
+  const bool is_flat = (columns > 1 && box.high_px.x() <= box.low_px.x()) ||
+                       (rows > 1 && box.high_px.y() <= box.low_px.y());
+  if (is_flat) {
+    throw map.error("highest_px", "'highest_px' is not above 'lowest_px'",
+                    "run nadir-calibrate again");
+  }
+  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  const std::vector<double> error_x_m = map.numbers("error_x_m", count);
+  const std::vector<double> error_y_m = map.numbers("error_y_m", count);
+  const std::vector<double> variance_x_m2 = map.numbers("variance_x_m2", count, {0.0});
+  const std::vector<double> variance_y_m2 = map.numbers("variance_y_m2", count, {0.0});
+  map.finish();
+  std::vector<LackOfFitNode> nodes;
+  for (std::size_t i = 0; i < count; ++i) {
+    nodes.push_back({{error_x_m[i], error_y_m[i]}, {variance_x_m2[i], variance_y_m2[i]}});
+  }
+  return {box, columns, rows, std::move(nodes)};
+}
+
 PlaneMap read_polynomial(const YamlMap& map) {
   PolynomialMap::Parameters parameters;
   parameters.order = kOrder;
@@ -120,9 +172,9 @@ PlaneMap read_polynomial(const YamlMap& map) {
   const std::vector<double> y_m = map.numbers("y_m", kTerms);
   for (int term = 0; term < kTerms; ++term)
     parameters.coefficients_m.col(term) << x_m[term], y_m[term];
-  parameters.residual_variance_m2 = map.number("residual_variance_m2", {0.0});
-  parameters.lack_of_fit_variance_m2 = map.number("lack_of_fit_variance_m2", {0.0});
+  parameters.noise_variance_m2 = map.number("noise_variance_m2", {0.0});
   parameters.information_inverse = read_information(map);
+  parameters.lack_of_fit = read_lack_of_fit(map.map("lack_of_fit"));
   map.finish();
   return PlaneMap{PolynomialMap(parameters)};
 }

@@ -41,7 +41,8 @@ std::string misfit_remark(const StatedNoise& noise, const FieldFit& fit) {
     return fmt::format(
         "{}, the stated noise explains {:.2g} mm: the model does not fit. A second-order "
         "polynomial cannot "
-        "follow radial lens distortion. What is unexplained counts as error of every position.",
+        "follow radial lens distortion. What is unexplained counts as error of the positions near "
+        "by.",
         left, 1e3 * fit.explained_rms_m);
   }
   if (!noise.is_stated() && fit.residuals.rms_px > kUsualResidual_px) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/pixel_box.h"
 #include "vision/pixel.h"
 
 namespace nadir::calibration {
@@ -27,13 +28,7 @@ struct FieldPoints {
 /// cell that is not a finite number, or no points at all.
 FieldPoints load_field_points(const std::filesystem::path& file);
 
-/// Smallest upright rectangle that holds the points, pixels.
-struct PixelBox {
-  vision::PixelPoint low_px = vision::PixelPoint::Zero();
-  vision::PixelPoint high_px = vision::PixelPoint::Zero();
-};
-
-/// The box of at least one point.
+/// The smallest box that holds the points, of which there is at least one.
 PixelBox pixel_box(const FieldPoints& points);
 
 }  // namespace nadir::calibration

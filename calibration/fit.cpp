@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
+#include "calibration/residual_field.h"
 #include "vision/input/input_error.h"
 
 namespace nadir::calibration {
@@ -69,22 +71,44 @@ void check_orientation(const PlaneMap& map, const FieldPoints& points) {
   }
 }
 
-/// Variance per axis of the points about the map, m^2.
-double residual_variance_m2(const std::vector<PointResidual>& residuals, double noise_variance_m2) {
-  const auto freedom = 2.0 * (static_cast<double>(residuals.size()) - kTerms);
-  if (freedom <= 0.0) return noise_variance_m2;
-  double sum_m2 = 0.0;
-  for (const PointResidual& residual : residuals) sum_m2 += residual.error_m.squaredNorm();
-  return sum_m2 / freedom;
-}
-
-double mean_noise_variance_m2(const PlaneMap& map, const FieldPoints& points,
-                              const StatedNoise& noise) {
-  double sum_m2 = 0.0;
+Eigen::Vector2d mean_noise_variance_m2(const PlaneMap& map, const FieldPoints& points,
+                                       const StatedNoise& noise) {
+  Eigen::Vector2d sum_m2 = Eigen::Vector2d::Zero();
   for (const FieldPoint& point : points.points) {
     sum_m2 += noise.variance_m2(map.jacobian_m_per_px(point.pixel));
   }
   return sum_m2 / static_cast<double>(points.points.size());
+}
+
+/// Exactly six points leave no residual: the noise is the stated one, or else that of one pixel,
+/// which then counts as lack of fit too.
+ResidualEstimate estimate_without_residuals(const PlaneMap& map, const FieldPoints& points,
+                                            const StatedNoise& noise) {
+  if (noise.is_stated()) return {LackOfFit(), mean_noise_variance_m2(map, points, noise)};
+  const Eigen::Vector2d assumed_m2 =
+      mean_noise_variance_m2(map, points, {kAssumedPixelNoise_px, std::nullopt});
+  return {LackOfFit::uniform(assumed_m2.mean()), assumed_m2};
+}
+
+ResidualEstimate split_residuals(const PlaneMap& map, const FieldPoints& points,
+                                 const StatedNoise& noise,
+                                 const std::vector<PointResidual>& residuals) {
+  if (residuals.size() == kTerms) return estimate_without_residuals(map, points, noise);
+  const auto& parameters = std::get<PolynomialMap>(map.model()).parameters();
+  FitResiduals fit{pixel_box(points),
+                   {},
+                   Eigen::MatrixX2d(residuals.size(), 2),
+                   [centre_px = parameters.centre_px, scale_px = parameters.scale_px](
+                       const vision::PixelPoint& pixel) -> Eigen::VectorXd {
+                     return polynomial_basis((pixel - centre_px) / scale_px, kOrder);
+                   }};
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    fit.pixels.push_back(points.points[i].pixel);
+    fit.error_m.row(static_cast<Eigen::Index>(i)) = residuals[i].error_m;
+  }
+  std::optional<Eigen::Vector2d> stated_m2;
+  if (noise.is_stated()) stated_m2 = mean_noise_variance_m2(map, points, noise);
+  return estimate_residual_field(fit, stated_m2);
 }
 
 /// Coefficients and M^-1; the variances are still zero.
@@ -127,10 +151,10 @@ PolynomialMap::Parameters solve(const FieldPoints& points) {
 
 }  // namespace
 
-double StatedNoise::variance_m2(const Eigen::Matrix2d& jacobian_m_per_px) const {
+Eigen::Vector2d StatedNoise::variance_m2(const Eigen::Matrix2d& jacobian_m_per_px) const {
   const double pixel = pixel_px.value_or(0.0);
   const double survey = survey_m.value_or(0.0);
-  return 0.5 * jacobian_m_per_px.squaredNorm() * pixel * pixel + survey * survey;
+  return jacobian_m_per_px.rowwise().squaredNorm().array() * pixel * pixel + survey * survey;
 }
 
 FieldFit fit_polynomial2(const FieldPoints& points, const StatedNoise& noise) {
@@ -141,18 +165,14 @@ FieldFit fit_polynomial2(const FieldPoints& points, const StatedNoise& noise) {
   check_orientation(bare_map, points);
   const std::vector<PointResidual> residuals = point_residuals(bare_map, points);
 
-  const double stated_variance_m2 = mean_noise_variance_m2(bare_map, points, noise);
-  const double fallback_variance_m2 =
-      noise.is_stated()
-          ? stated_variance_m2
-          : mean_noise_variance_m2(bare_map, points, {kAssumedPixelNoise_px, std::nullopt});
-  parameters.residual_variance_m2 = residual_variance_m2(residuals, fallback_variance_m2);
-  parameters.lack_of_fit_variance_m2 =
-      std::max(0.0, parameters.residual_variance_m2 - stated_variance_m2);
+  ResidualEstimate estimate = split_residuals(bare_map, points, noise, residuals);
+  parameters.noise_variance_m2 = estimate.noise_variance_m2.mean();
+  parameters.lack_of_fit = std::move(estimate.lack_of_fit);
 
   // 2 (n - 6) of the 2 n residual components are free: that is what pure noise leaves on average.
   const auto count = static_cast<double>(points.points.size());
-  const double explained_rms_m = std::sqrt(2.0 * stated_variance_m2 * (count - kTerms) / count);
+  const double stated_variance_m2 = mean_noise_variance_m2(bare_map, points, noise).sum();
+  const double explained_rms_m = std::sqrt(stated_variance_m2 * (count - kTerms) / count);
   return {PlaneMap{PolynomialMap(parameters)}, residuals, residual_statistics(residuals),
           explained_rms_m};
 }

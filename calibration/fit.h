@@ -16,8 +16,8 @@ struct StatedNoise {
   std::optional<double> survey_m;  ///< of measuring a point on the field
 
   bool is_stated() const { return pixel_px.has_value() || survey_m.has_value(); }
-  /// Variance per axis that a point with this Jacobian (m/px) has from both, m^2.
-  double variance_m2(const Eigen::Matrix2d& jacobian_m_per_px) const;
+  /// Variance of x and y that a point with this Jacobian (m/px) has from both, m^2.
+  Eigen::Vector2d variance_m2(const Eigen::Matrix2d& jacobian_m_per_px) const;
 };
 
 /// A map and how well it explains the points from which it was made.
@@ -32,10 +32,9 @@ struct FieldFit {
 /// Least squares fit of a second-order polynomial (theory 4.4) on normalised pixel coordinates, by
 /// column-pivoting QR, all points with equal weight.
 ///
-/// The residual variance is what the points show, with 2 (n - 6) degrees of freedom; where exactly
-/// six points leave none, it is the stated noise, or else that of one pixel. The lack-of-fit
-/// variance of the map is what the stated noise leaves unexplained of it: max(0, residual variance
-/// - mean noise variance).
+/// What is left is split into noise and the map's local lack of fit by estimate_residual_field. The
+/// noise is the stated one; without a statement it is estimated, and counts as lack of fit as well.
+/// Exactly six points leave nothing: their noise is the stated one, or else that of one pixel.
 ///
 /// Throws InputError: fewer than 6 points, a number that is not finite, one pixel with two
 /// different places, points that do not determine the polynomial (on one line or one conic), places

@@ -33,8 +33,7 @@ class PlaneMap {
   /// converge, or only beyond a fold of the map (where the image would be mirrored).
   std::optional<vision::PixelPoint> pixel_from_plane(const Eigen::Vector2d& plane_m) const;
   /// What the calibration itself adds to the error of a mapped point: the parameters' sampling
-  /// error and the model's lack of fit (theory 4.4). It changes slowly over the image: near points
-  /// err alike.
+  /// error and the model's lack of fit there (theory 4.4). Near points err alike.
   Eigen::Matrix2d calibration_covariance_m2(const vision::PixelPoint& pixel) const;
   /// Maps a pixel with its covariance: J C J^T + calibration_covariance_m2.
   PlanePoint map(const vision::PixelPoint& pixel, const Eigen::Matrix2d& covariance_px2) const;

@@ -1,5 +1,6 @@
 #include "calibration/polynomial_map.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -43,9 +44,9 @@ void check(const PolynomialMap::Parameters& parameters) {
       information.cols() != terms) {
     throw std::invalid_argument("polynomial map: sizes do not belong to the order");
   }
-  if (!(parameters.scale_px > 0.0) || !(parameters.residual_variance_m2 >= 0.0) ||
-      !(parameters.lack_of_fit_variance_m2 >= 0.0) || !parameters.coefficients_m.allFinite() ||
-      !information.allFinite() || !parameters.centre_px.allFinite()) {
+  if (!(parameters.scale_px > 0.0) || !(parameters.noise_variance_m2 >= 0.0) ||
+      !parameters.coefficients_m.allFinite() || !information.allFinite() ||
+      !parameters.centre_px.allFinite()) {
     throw std::invalid_argument("polynomial map: number out of range");
   }
 }
@@ -76,14 +77,24 @@ Eigen::Matrix2d PolynomialMap::jacobian_m_per_px(const vision::PixelPoint& pixel
          parameters_.scale_px;
 }
 
-double PolynomialMap::sampling_variance_m2(const vision::PixelPoint& pixel) const {
+double PolynomialMap::leverage(const vision::PixelPoint& pixel) const {
   const PolynomialBasis phi = polynomial_basis(normalised(pixel), parameters_.order);
-  return parameters_.residual_variance_m2 * phi.dot(parameters_.information_inverse * phi);
+  return phi.dot(parameters_.information_inverse * phi);
+}
+
+double PolynomialMap::sampling_variance_m2(const vision::PixelPoint& pixel) const {
+  return parameters_.noise_variance_m2 * leverage(pixel);
 }
 
 Eigen::Matrix2d PolynomialMap::calibration_covariance_m2(const vision::PixelPoint& pixel) const {
-  return (sampling_variance_m2(pixel) + parameters_.lack_of_fit_variance_m2) *
-         Eigen::Matrix2d::Identity();
+  const LackOfFit& lack = parameters_.lack_of_fit;
+  Eigen::Vector2d variance_m2 = lack.mean_square_m2(pixel);
+  const double here = leverage(pixel);
+  if (lack.nodes().size() > 1 && !lack.box().holds(pixel)) {
+    variance_m2 *= std::max(1.0, here / leverage(lack.box().nearest(pixel)));
+  }
+  variance_m2.array() += parameters_.noise_variance_m2 * here;
+  return variance_m2.asDiagonal();
 }
 
 }  // namespace nadir::calibration

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "calibration/lack_of_fit.h"
 #include "vision/pixel.h"
 
 namespace nadir::calibration {
@@ -32,11 +33,14 @@ PolynomialBasis polynomial_basis(const Eigen::Vector2d& normalised, int order);
 ///     p   = coefficients_m phi(n)
 ///     J   = coefficients_m dphi/dn / scale_px
 ///     M   = sum of phi phi^T over the fitted points
-///     C   = (residual_variance phi^T M^-1 phi + lack_of_fit_variance) I
+///     C   = noise_variance phi^T M^-1 phi I + diag(mean square lack of fit)
 ///
 /// The first part of C is the sampling error of the coefficients. The second is the model's own
 /// error: what is left of a residual that the noise does not explain is systematic, and so it is an
-/// error of every published place.
+/// error of the places near by. Theory 4.4 has s_res^2 in the first part, which counts the model's
+/// error there as if it were noise, everywhere and equally in both axes; here each stands where it
+/// belongs. Outside of the lack of fit's box its border's value grows with the leverage
+/// phi^T M^-1 phi.
 class PolynomialMap {
  public:
   struct Parameters {
@@ -45,8 +49,8 @@ class PolynomialMap {
     double scale_px = 1.0;                      ///< above 0
     PolynomialCoefficients coefficients_m;      ///< 2 x polynomial_terms(order)
     PolynomialInformation information_inverse;  ///< M^-1, terms x terms, no unit
-    double residual_variance_m2 = 0.0;          ///< per axis
-    double lack_of_fit_variance_m2 = 0.0;       ///< per axis
+    double noise_variance_m2 = 0.0;             ///< of the points, per axis
+    LackOfFit lack_of_fit;
   };
 
   /// Throws std::invalid_argument where sizes do not belong to the order, or a number is out of
@@ -56,8 +60,9 @@ class PolynomialMap {
   Eigen::Vector2d plane_from_pixel(const vision::PixelPoint& pixel) const;
   /// d(x_m, y_m)/d(u_px, v_px), in closed form.
   Eigen::Matrix2d jacobian_m_per_px(const vision::PixelPoint& pixel) const;
-  /// The sampling error alone: residual_variance phi^T M^-1 phi, m^2 per axis.
+  /// The sampling error alone: noise_variance phi^T M^-1 phi, m^2 per axis.
   double sampling_variance_m2(const vision::PixelPoint& pixel) const;
+  /// C, diagonal.
   Eigen::Matrix2d calibration_covariance_m2(const vision::PixelPoint& pixel) const;
   /// Where a search for a pixel starts.
   vision::PixelPoint centre_px() const { return parameters_.centre_px; }
@@ -68,6 +73,9 @@ class PolynomialMap {
   Eigen::Vector2d normalised(const vision::PixelPoint& pixel) const {
     return (pixel - parameters_.centre_px) / parameters_.scale_px;
   }
+
+  /// phi^T M^-1 phi.
+  double leverage(const vision::PixelPoint& pixel) const;
 
   Parameters parameters_;
 };

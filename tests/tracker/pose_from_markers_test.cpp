@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 // A slightly curved map of a 640x480 image, about 5 mm per px. `mirrored`: v down and y up, as
 // every camera sees it that looks down on a field with a right-handed frame; otherwise y goes down
 // too.
-calibration::PlaneMap curved_map(bool mirrored, double residual_variance_m2 = 0.0,
+calibration::PlaneMap curved_map(bool mirrored, double noise_variance_m2 = 0.0,
                                  double lack_of_fit_m2 = 0.0) {
   calibration::PolynomialMap::Parameters parameters;
   parameters.order = 2;
@@ -28,8 +28,8 @@ calibration::PlaneMap curved_map(bool mirrored, double residual_variance_m2 = 0.
   parameters.coefficients_m << 0.1, 1.6, 0.02, 0.03, 0.01, -0.02,  //
       -0.2, 0.03, sign * 1.62, 0.01, 0.02, 0.025;
   parameters.information_inverse = Eigen::MatrixXd::Identity(6, 6) / 24.0;
-  parameters.residual_variance_m2 = residual_variance_m2;
-  parameters.lack_of_fit_variance_m2 = lack_of_fit_m2;
+  parameters.noise_variance_m2 = noise_variance_m2;
+  parameters.lack_of_fit = calibration::LackOfFit::uniform(lack_of_fit_m2);
   return calibration::PlaneMap(calibration::PolynomialMap(parameters));
 }
 
