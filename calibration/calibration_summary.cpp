@@ -13,8 +13,22 @@ namespace {
 
 constexpr std::size_t kWorstShown = 3;
 
-double sigma_mm(const PlaneMap& map, const vision::PixelPoint& pixel) {
-  return 1e3 * std::sqrt(map.calibration_covariance_m2(pixel).trace() / 2.0);
+/// Mean of both axes.
+double variance_m2(const PlaneMap& map, const vision::PixelPoint& pixel) {
+  return map.calibration_covariance_m2(pixel).trace() / 2.0;
+}
+
+/// RMS over the box of the points: at a single place the error may happen to pass through zero.
+double typical_sigma_m(const PlaneMap& map, const PixelBox& box) {
+  constexpr int kSteps = 20;
+  double sum_m2 = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      const Eigen::Vector2d share((i + 0.5) / kSteps, (j + 0.5) / kSteps);
+      sum_m2 += variance_m2(map, box.low_px + share.cwiseProduct(box.high_px - box.low_px));
+    }
+  }
+  return std::sqrt(sum_m2 / (kSteps * kSteps));
 }
 
 std::string residual_table(const ResidualStatistics& residuals) {
@@ -49,23 +63,24 @@ std::string noise_text(const StatedNoise& noise) {
   return text;
 }
 
-/// What the calibration itself adds to the error of each place, at the middle and the corners of
-/// the points.
+/// What the calibration itself adds to the error of a place: in the box of the points as a rule,
+/// and in its worst corner.
 std::string error_text(const Calibration& calibration) {
   const PixelBox& box = calibration.points_box;
   const vision::PixelPoint middle = 0.5 * (box.low_px + box.high_px);
-  double corner_mm = 0.0;
+  double corner_m2 = 0.0;
   for (const double u : {box.low_px.x(), box.high_px.x()}) {
     for (const double v : {box.low_px.y(), box.high_px.y()}) {
-      corner_mm = std::max(corner_mm, sigma_mm(calibration.map, {u, v}));
+      corner_m2 = std::max(corner_m2, variance_m2(calibration.map, {u, v}));
     }
   }
   const double scale = std::sqrt(std::abs(calibration.map.jacobian_m_per_px(middle).determinant()));
   return fmt::format(
       "  scale           {:.3f} mm/px in the middle of the points\n"
       "  stated noise    {}\n"
-      "  own error       {:.3f} mm in the middle, {:.3f} mm at the corners (one sigma per axis)\n",
-      1e3 * scale, noise_text(calibration.noise), sigma_mm(calibration.map, middle), corner_mm);
+      "  own error       {:.3f} mm RMS, {:.3f} mm in the worst corner (one sigma per axis)\n",
+      1e3 * scale, noise_text(calibration.noise), 1e3 * typical_sigma_m(calibration.map, box),
+      1e3 * std::sqrt(corner_m2));
 }
 
 nlohmann::ordered_json residuals_json(const ResidualStatistics& residuals) {

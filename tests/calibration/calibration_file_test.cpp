@@ -49,8 +49,16 @@ TEST_F(CalibrationFile, KeepsEveryBit) {
   EXPECT_EQ(after.scale_px, before.scale_px);
   EXPECT_EQ(after.coefficients_m, before.coefficients_m);
   EXPECT_EQ(after.information_inverse, before.information_inverse);
-  EXPECT_EQ(after.residual_variance_m2, before.residual_variance_m2);
-  EXPECT_EQ(after.lack_of_fit_variance_m2, before.lack_of_fit_variance_m2);
+  EXPECT_EQ(after.noise_variance_m2, before.noise_variance_m2);
+  EXPECT_EQ(after.lack_of_fit.box().low_px, before.lack_of_fit.box().low_px);
+  EXPECT_EQ(after.lack_of_fit.box().high_px, before.lack_of_fit.box().high_px);
+  EXPECT_EQ(after.lack_of_fit.columns(), before.lack_of_fit.columns());
+  EXPECT_EQ(after.lack_of_fit.rows(), before.lack_of_fit.rows());
+  ASSERT_EQ(after.lack_of_fit.nodes().size(), before.lack_of_fit.nodes().size());
+  for (std::size_t i = 0; i < before.lack_of_fit.nodes().size(); ++i) {
+    EXPECT_EQ(after.lack_of_fit.nodes()[i].error_m, before.lack_of_fit.nodes()[i].error_m);
+    EXPECT_EQ(after.lack_of_fit.nodes()[i].variance_m2, before.lack_of_fit.nodes()[i].variance_m2);
+  }
   EXPECT_EQ(read.height_m, 0.12);
   EXPECT_EQ(read.image_width_px, 1282);
   EXPECT_EQ(read.image_height_px, 962);
@@ -87,9 +95,20 @@ TEST_F(CalibrationFile, RefusesWhatIsNoCovariance) {
   const Calibration written = example();
   const std::string text = calibration_yaml(written);
   const std::size_t last_row = text.rfind("    - {row");
-  const auto file = folder_.write("cal.yaml", text.substr(0, last_row));
+  const std::size_t after_it = text.find('\n', last_row) + 1;
+  const auto file = folder_.write("cal.yaml", text.substr(0, last_row) + text.substr(after_it));
   EXPECT_THAT(input_error_line([&] { load_calibration(file); }),
               HasSubstr("has 5 rows; 6 are needed"));
+}
+
+TEST_F(CalibrationFile, RefusesWhatIsNoLackOfFit) {
+  EXPECT_THAT(line_with("    columns: ", "    columns: 1"), HasSubstr("error_x_m"));
+  EXPECT_THAT(line_with("    columns: ", "    columns: -"), HasSubstr("columns"));
+  EXPECT_THAT(line_with("    variance_y_m2: [", "    variance_y_m2: [-1, "),
+              HasSubstr("variance_y_m2"));
+  EXPECT_THAT(line_with("    variance_y_m2: [\n      ", "    variance_y_m2: [\n      -"),
+              HasSubstr("variance_y_m2"));
+  EXPECT_THAT(line_with("    rows: ", "    depth: 2\n    rows: "), HasSubstr("depth"));
 }
 
 TEST_F(CalibrationFile, RefusesAFileThatIsNotThere) {

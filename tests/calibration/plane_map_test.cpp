@@ -67,8 +67,8 @@ TEST(PlaneMap, MapsTheCovarianceOfAPixel) {
   PolynomialMap::Parameters parameters = folding_parameters();
   parameters.centre_px = {100.0, 50.0};
   parameters.scale_px = 10.0;
-  parameters.residual_variance_m2 = 0.5;
-  parameters.lack_of_fit_variance_m2 = 0.25;
+  parameters.noise_variance_m2 = 0.5;
+  parameters.lack_of_fit = LackOfFit::uniform(0.25);
   const PlaneMap map{PolynomialMap(parameters)};
   Eigen::Matrix2d covariance_px2;
   covariance_px2 << 4.0, 1.0, 1.0, 9.0;

@@ -45,7 +45,7 @@ TEST(Validation, CoversAlsoWithoutStatedNoise) {
 
 TEST(Validation, CoversAModelThatDoesNotFit) {
   const double coverage = mean_coverage(barrel_truth, 0.1, 0.0, {.pixel_px = 0.1, .survey_m = {}});
-  EXPECT_GT(coverage, 0.85);
+  EXPECT_GT(coverage, 0.98);  // 0.886 with one lack of fit for the whole field
 }
 
 TEST(Validation, SeesAShiftedField) {
@@ -74,7 +74,7 @@ TEST(Validation, IsHonestOnARealWideLens) {
   const Validation validation = validate(calibration, others);
   EXPECT_EQ(points.points.size(), 418U);
   EXPECT_NEAR(validation.residuals.rms_m, 0.0268, 0.002);
-  EXPECT_GT(validation.coverage95, 0.90);
+  EXPECT_GT(validation.coverage95, 0.98);
 }
 
 }  // namespace
