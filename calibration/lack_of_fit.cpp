@@ -54,7 +54,9 @@ Eigen::Vector2d LackOfFit::mean_square_m2(const vision::PixelPoint& pixel) const
   Eigen::Vector2d error_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d variance_m2 = Eigen::Vector2d::Zero();
   const auto add = [&](int column, int row, double weight) {
-    const LackOfFitNode& node = nodes_[static_cast<std::size_t>(row * columns_ + column)];
+    const LackOfFitNode& node =
+        nodes_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(column)];
     error_m += weight * node.error_m;
     variance_m2 += weight * node.variance_m2;
   };

@@ -268,7 +268,8 @@ void add_grid_error(const PixelBox& box, const ResidualField& field,
   std::vector<int> cells(nodes->size(), 0);
   for (int row = 0; row + 1 < kRows; ++row) {
     for (int column = 0; column + 1 < kColumns; ++column) {
-      const std::size_t first = static_cast<std::size_t>(row * kColumns + column);
+      const auto first =
+          static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
       const std::array<std::size_t, 4> corners = {first, first + 1, first + kColumns,
                                                   first + kColumns + 1};
       Eigen::Vector2d error_m = field.at(grid_pixel(box, column + 0.5, row + 0.5)).error_m;
