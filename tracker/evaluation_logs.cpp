@@ -55,10 +55,10 @@ LoggedFrame read_frame(const Json& json) {
 
 void read_covariance(const Json& json, fusion::PoseCovariance& covariance) {
   const Json& numbers = json.at("covariance");
+  std::size_t next = 0;  // row by row
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      covariance(row, column) =
-          numbers.at(static_cast<std::size_t>(3 * row + column)).get<double>();
+      covariance(row, column) = numbers.at(next++).get<double>();
     }
   }
 }
