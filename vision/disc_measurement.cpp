@@ -28,8 +28,8 @@ constexpr float kShadingOverScatter =
 constexpr double kShadingError =
     0.10;  // px of centre error per relative change of brightness over a radius
 constexpr float kLeastContrast = 10.0F;  // grey levels
-constexpr int kMostIterations = 6;
-constexpr double kSettled_px = 0.5;
+constexpr int kMostIterations = 8;
+constexpr double kSettled_px = 0.3;
 constexpr double kConverged_px = 0.02;
 constexpr double kFloorVariance_px2 = 4.9e-5;  // (0.007 px)^2: sampling, point spread, demosaicing
 
@@ -254,13 +254,14 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
   window.slope_v = 0.0F;
   WindowSums sums;
   Ring ring;
+  bool settled = false;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const PixelPoint& c = window.centre;
     if (c.x() < radius_px || c.y() < radius_px || c.x() > bgr.cols - 1 - radius_px ||
         c.y() > bgr.rows - 1 - radius_px) {
       return MeasureOutcome::kOutsideImage;
     }
-    if (iteration < 3) {  // the colours settle before the place does
+    if (!settled) {  // colours seen from a wrong place are wrong
       sample_ring(bgr, scale, c, radius_px + kRingDistance_px, ring);
       disc.surroundings = median_of_ring(ring);
       disc.colour = middle_colour(bgr, scale, c, radius_px);
@@ -275,9 +276,9 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
     const PixelPoint step(sums.weight_u / sums.weight, sums.weight_v / sums.weight);
     window.centre += step;
     if ((window.centre - start).norm() > 1.5 * radius_px + 1.0) return MeasureOutcome::kDriftsAway;
-    const bool settled = step.norm() < kSettled_px;
-    if (settled && iteration >= 1) {
-      if (window.limits.low == kMeasureLimits.low && step.norm() < kConverged_px) break;
+    if (settled && step.norm() < kConverged_px) break;
+    if (!settled && step.norm() < kSettled_px) {
+      settled = true;
       window.limits = kMeasureLimits;
       fit_shading(sums, window);
     }

@@ -131,6 +131,25 @@ bool SparseSearch::stands_out(const std::int16_t* centre) const {
   return true;
 }
 
+// Mean of the grid points about one that stands out, weighted with their score: nearer to the
+// disc's centre.
+PixelPoint SparseSearch::middle_of_neighbours(int colour, int row, int column) const {
+  const std::int16_t* const centre = cell(colour, row, column);
+  int sum = 0;
+  int sum_column = 0;
+  int sum_row = 0;
+  for (int dr = -1; dr <= 1; ++dr) {
+    for (int dc = -1; dc <= 1; ++dc) {
+      const int weight = std::max<int>(0, centre[dr * stride_ + dc]);
+      sum += weight;
+      sum_column += weight * dc;
+      sum_row += weight * dr;
+    }
+  }
+  return {first_px_ + step_px_ * (column + static_cast<double>(sum_column) / sum),
+          first_px_ + step_px_ * (row + static_cast<double>(sum_row) / sum)};
+}
+
 void SparseSearch::mark(const PixelPoint& centre, double radius_px, int colour) {
   const auto grid = [this](double pixel) { return (pixel - first_px_) / step_px_; };
   const int row_end =

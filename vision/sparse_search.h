@@ -34,7 +34,7 @@ class SparseSearch {
       for (int row = 0; row < rows_; ++row) {
         for (int column = next_seed(colour, row, 0); column < columns_;
              column = next_seed(colour, row, column + 1)) {
-          visit(Seed{{first_px_ + step_px_ * column, first_px_ + step_px_ * row}, colour});
+          visit(Seed{middle_of_neighbours(colour, row, column), colour});
         }
       }
     }
@@ -55,6 +55,7 @@ class SparseSearch {
   void score_row(const std::uint8_t* row_bgr, int row);
   int next_seed(int colour, int row, int from) const;
   bool stands_out(const std::int16_t* cell) const;
+  PixelPoint middle_of_neighbours(int colour, int row, int column) const;
   std::int16_t* cell(int colour, int row, int column) {
     return &scores_[static_cast<std::size_t>(colour) * plane_size_ +
                     static_cast<std::size_t>(row + margin_) * stride_ + column + margin_];
