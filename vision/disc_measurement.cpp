@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kRingSamples = 16;
 constexpr float kRingDistance_px = 2.0F;  // of the ring of surroundings from the disc's edge
-constexpr float kWindowMargin_px = 1.8F;  // the window's taper ends here, outside the edge
-constexpr float kTaper_px = 1.0F;
+constexpr float kWindowMargin_px = 1.1F;  // the window's taper ends here, outside the edge
+constexpr float kTaper_px = 0.8F;
 // Shares below `low` count nothing, above `high` fully. Low limits find the disc from afar; limits
 // about one half put the edge where it is and leave out what lies behind a thin rim.
 struct ShareLimits {
@@ -27,11 +27,14 @@ constexpr float kShadingOverScatter =
     8.0F;  // explained sum of squares over scatter that chance may bring
 constexpr double kShadingError =
     0.10;  // px of centre error per relative change of brightness over a radius
+// Pixels further from the line between disc and surroundings than this share of the contrast lose
+// their weight, ...
+constexpr float kForeignShare = 0.35F;
+constexpr float kForeignLimit = 2.0F;    // ... all of it at sqrt(2) times that
 constexpr float kLeastContrast = 10.0F;  // grey levels
 constexpr int kMostIterations = 8;
 constexpr double kSettled_px = 0.3;
 constexpr double kConverged_px = 0.02;
-constexpr double kFloorVariance_px2 = 4.9e-5;  // (0.007 px)^2: sampling, point spread, demosaicing
 
 struct UnitVector {
   float x;
@@ -99,7 +102,6 @@ struct WindowSums {
   float weight = 0.0F;
   float weight_u = 0.0F;
   float weight_v = 0.0F;
-  float share = 0.0F;  // soft pixel count
   float edge_moment =
       0.0F;  // sum of squared distance (mean of both axes) of pixels whose share is not limited
   float inside = 0.0F;  // number of pixels well inside, and sums over them
@@ -117,8 +119,8 @@ struct Window {
   PixelPoint centre;
   float radius_px;
   Eigen::Matrix2f to_round;  // pixel offset -> offset in which the disc is a circle of radius_px
-  Bgr direction;             // projection on the colour line; share = direction . value - offset
-  float offset;
+  Bgr surroundings;
+  Bgr difference;  // of the disc's colour from its surroundings
   ShareLimits limits;
   float slope_u;  // of the brightness inside the disc, share per pixel: light that falls off, a
                   // shadow's edge
@@ -138,6 +140,8 @@ pass_over_window(const cv::Mat& bgr, const Window& w) {
   const float deep = std::max(0.0F, w.radius_px - kDeep_px);
   const float deep2 = deep * deep;
   const float share_gain = 1.0F / (w.limits.high - w.limits.low);
+  const float per_contrast2 = 1.0F / w.difference.squaredNorm();
+  const float per_foreign2 = per_contrast2 / (kForeignShare * kForeignShare);
   const float half_u = outer * std::max(1.0F, 1.0F / w.to_round.col(0).norm());
   const float half_v = outer * std::max(1.0F, 1.0F / w.to_round.col(1).norm());
   const auto cu = static_cast<float>(w.centre.x());
@@ -156,15 +160,21 @@ pass_over_window(const cv::Mat& bgr, const Window& w) {
       const float distance2 = x * x + y * y;
       const float taper = std::min(1.0F, (outer2 - distance2) * taper_gain);
       if (taper <= 0.0F) continue;
-      const float share = w.direction[0] * pixel[0] + w.direction[1] * pixel[1] +
-                          w.direction[2] * pixel[2] - w.offset;
+      const float blue = pixel[0] - w.surroundings[0];
+      const float green = pixel[1] - w.surroundings[1];
+      const float red = pixel[2] - w.surroundings[2];
+      const float along = w.difference[0] * blue + w.difference[1] * green + w.difference[2] * red;
+      const float share = along * per_contrast2;
+      // What is neither disc nor surroundings nor a mixture of both lies off the line between the
+      // two.
+      const float off_line2 = blue * blue + green * green + red * red - along * share;
+      const float own = std::clamp(kForeignLimit - off_line2 * per_foreign2, 0.0F, 1.0F);
       const float lit = std::clamp(1.0F + w.slope_u * du + w.slope_v * dv, 0.3F, 1.7F);
       const float limited = (share / lit - w.limits.low) * share_gain;
-      const float weight = taper * std::clamp(limited, 0.0F, 1.0F);
+      const float weight = taper * own * std::clamp(limited, 0.0F, 1.0F);
       sums.weight += weight;
       sums.weight_u += weight * du;
       sums.weight_v += weight * dv;
-      sums.share += taper * std::clamp(share, 0.0F, 1.0F);
       if (limited > 0.0F && limited < 1.0F) sums.edge_moment += taper * taper * distance2;
       if (distance2 < deep2) {
         sums.inside += 1.0F;
@@ -185,9 +195,10 @@ pass_over_window(const cv::Mat& bgr, const Window& w) {
 // Scatter of the surroundings' shares, robustly: half the ring may show something else.
 float ring_deviation(const Ring& ring, const Window& w) {
   std::array<float, kRingSamples> deviation;
+  const Bgr direction = w.difference / w.difference.squaredNorm();
   for (int i = 0; i < kRingSamples; ++i) {
-    deviation[i] = std::abs(w.direction[0] * ring[0][i] + w.direction[1] * ring[1][i] +
-                            w.direction[2] * ring[2][i] - w.offset);
+    const Bgr value(ring[0][i], ring[1][i], ring[2][i]);
+    deviation[i] = std::abs(direction.dot(value - w.surroundings));
   }
   const auto middle = deviation.begin() + kRingSamples / 2;
   std::nth_element(deviation.begin(), middle, deviation.end());
@@ -229,7 +240,7 @@ double centre_variance_px2(const WindowSums& sums, const Window& window,
                           (static_cast<double>(sums.weight) * sums.weight);
   const double shading =
       kShadingError * window.radius_px * std::hypot(window.slope_u, window.slope_v);
-  return per_axis + shading * shading + kFloorVariance_px2;
+  return per_axis + shading * shading;
 }
 
 }  // namespace
@@ -243,7 +254,8 @@ LocalScale local_scale(const PixelScaleGrid& grid, const PixelPoint& pixel) {
 }
 
 MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double radius_m,
-                            const PixelPoint& start, DiscMeasurement& disc) {
+                            const PixelPoint& start, double sampling_variance_px2,
+                            DiscMeasurement& disc) {
   const float radius_px = static_cast<float>(radius_m) * scale.scale_px_per_m;
   Window window;
   window.centre = start;
@@ -265,11 +277,10 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
       sample_ring(bgr, scale, c, radius_px + kRingDistance_px, ring);
       disc.surroundings = median_of_ring(ring);
       disc.colour = middle_colour(bgr, scale, c, radius_px);
-      const Bgr difference = disc.colour - disc.surroundings;
-      disc.contrast = difference.norm();
+      window.surroundings = disc.surroundings;
+      window.difference = disc.colour - disc.surroundings;
+      disc.contrast = window.difference.norm();
       if (disc.contrast < kLeastContrast) return MeasureOutcome::kWeakContrast;
-      window.direction = difference / difference.squaredNorm();
-      window.offset = window.direction.dot(disc.surroundings);
     }
     sums = pass_over_window(bgr, window);
     if (sums.weight < 1.0F) return MeasureOutcome::kWeakContrast;
@@ -284,9 +295,10 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
     }
   }
   disc.centre_px = window.centre;
-  disc.pixels = sums.share;
+  disc.pixels = sums.weight;
   disc.expected_pixels = M_PI * radius_px * radius_px;
-  disc.variance_px2 = centre_variance_px2(sums, window, ring_deviation(ring, window));
+  disc.variance_px2 = centre_variance_px2(sums, window, ring_deviation(ring, window)) +
+                      sampling_variance_px2 / disc.pixels;
   return MeasureOutcome::kMeasured;
 }
 

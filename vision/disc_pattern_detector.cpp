@@ -5,6 +5,7 @@
 
 #include "vision/disc_measurement.h"
 #include "vision/input/input_error.h"
+#include "vision/mosaic_trace.h"
 #include "vision/pattern_match.h"
 #include "vision/sparse_search.h"
 
@@ -52,6 +53,7 @@ struct DiscPatternDetector::State {
   SparseSearch search;
   PatternMatch pattern;
   int candidates = 0;
+  double sampling_variance_px2 = kSamplingVariance_px2;
   std::vector<char> shared;
 };
 
@@ -74,7 +76,8 @@ void DiscPatternDetector::State::consider(const cv::Mat& bgr, const Seed& seed,
     return;
   }
   DiscMeasurement disc;
-  const MeasureOutcome outcome = measure_disc(bgr, local, layout.centre_radius_m, seed.pixel, disc);
+  const MeasureOutcome outcome =
+      measure_disc(bgr, local, layout.centre_radius_m, seed.pixel, sampling_variance_px2, disc);
   search.mark(seed.pixel, 0.8 * radius_px, seed.colour);
   if (outcome != MeasureOutcome::kMeasured) {
     if (outcome == MeasureOutcome::kOutsideImage) {
@@ -95,7 +98,7 @@ void DiscPatternDetector::State::consider(const cv::Mat& bgr, const Seed& seed,
   }
   RobotObservation robot;
   RejectReason reason{};
-  if (!pattern.match(bgr, local, disc, seed.colour, robot, reason)) {
+  if (!pattern.match(bgr, local, disc, seed.colour, sampling_variance_px2, robot, reason)) {
     return reject(result, disc.centre_px, reason);
   }
   if (result.robots.size() >= kMostRobots) {
@@ -160,6 +163,8 @@ void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
   result.rejected.reserve(kMostRejections);
   State& state = *state_;
   state.candidates = 0;
+  state.sampling_variance_px2 =
+      looks_demosaiced(bgr) ? kDemosaicedSamplingVariance_px2 : kSamplingVariance_px2;
   state.search.scan(bgr);
   state.search.for_each_seed([&](const Seed& seed) { state.consider(bgr, seed, result); });
   state.resolve_shared_discs(result);

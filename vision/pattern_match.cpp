@@ -101,7 +101,7 @@ int PatternMatch::best_heading(const cv::Mat& bgr, const LocalScale& scale,
 }
 
 bool PatternMatch::measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale, int heading,
-                                       const DiscMeasurement& centre,
+                                       const DiscMeasurement& centre, double sampling_variance_px2,
                                        std::array<DiscMeasurement, kMaxDiscs>& discs) const {
   const Eigen::Vector2f d = headings_[heading];
   for (std::size_t i = 0; i < outer_.size(); ++i) {
@@ -111,7 +111,8 @@ bool PatternMatch::measure_outer_discs(const cv::Mat& bgr, const LocalScale& sca
         Eigen::Vector2f(d.x() * p.x() - d.y() * p.y(), d.y() * p.x() + d.x() * p.y());
     DiscMeasurement& disc = discs[i + 1];
     const PixelPoint start = centre.centre_px + offset_px.cast<double>();
-    if (measure_disc(bgr, scale, outer_[i].radius_m, start, disc) != MeasureOutcome::kMeasured) {
+    if (measure_disc(bgr, scale, outer_[i].radius_m, start, sampling_variance_px2, disc) !=
+        MeasureOutcome::kMeasured) {
       return false;
     }
     const double area = disc.pixels / disc.expected_pixels;
@@ -192,7 +193,8 @@ double PatternMatch::fit_error_px(const LocalScale& scale, const RobotObservatio
 }
 
 bool PatternMatch::match(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre,
-                         int team, RobotObservation& robot, RejectReason& reason) const {
+                         int team, double sampling_variance_px2, RobotObservation& robot,
+                         RejectReason& reason) const {
   reason = RejectReason::kNoHeadingMarker;
   float hue = 0.0F;
   const int heading = best_heading(bgr, scale, centre, hue);
@@ -200,7 +202,7 @@ bool PatternMatch::match(const cv::Mat& bgr, const LocalScale& scale, const Disc
   std::array<DiscMeasurement, kMaxDiscs> discs;
   discs[0] = centre;
   reason = RejectReason::kPatternDoesNotFit;
-  if (!measure_outer_discs(bgr, scale, heading, centre, discs)) return false;
+  if (!measure_outer_discs(bgr, scale, heading, centre, sampling_variance_px2, discs)) return false;
 
   robot.team = team;
   robot.identity = -1;

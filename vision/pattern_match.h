@@ -17,10 +17,10 @@ class PatternMatch {
  public:
   PatternMatch(const MarkerLayout& layout, const ColourClasses& colours);
 
-  /// `centre` is a measured disc in the colour of team `team`. Fills `robot` and returns true, or
-  /// says why not.
+  /// `centre` is a measured disc in the colour of team `team`; `sampling_variance_px2` as in
+  /// measure_disc. Fills `robot` and returns true, or says why not.
   bool match(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre, int team,
-             RobotObservation& robot, RejectReason& reason) const;
+             double sampling_variance_px2, RobotObservation& robot, RejectReason& reason) const;
 
  private:
   struct OuterDisc {
@@ -38,7 +38,7 @@ class PatternMatch {
   int best_heading(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre,
                    float& score) const;
   bool measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale, int heading,
-                           const DiscMeasurement& centre,
+                           const DiscMeasurement& centre, double sampling_variance_px2,
                            std::array<DiscMeasurement, kMaxDiscs>& discs) const;
   Reading read_colour(const OuterDisc& outer, const Bgr& difference) const;
   int find_identity(const RobotObservation& robot) const;
