@@ -43,9 +43,9 @@ struct LawVariance {
 /// mapped to the plane by the Jacobian. No drop-out where N reaches N0: a soft count falls a few
 /// percent short of the disc's area without any pixel lost, and the area is known no better.
 struct DropOutVariance {
-  double floor_px = 0.02;  ///< what demosaicing and sampling do to a centre, per axis
+  double floor_px = 0.004;  ///< of what the detector does not see, per axis
   double minimum_pixels = 5.0;
-  double complete_share = 0.95;  ///< above 0, at most 1
+  double complete_share = 0.85;  ///< above 0, at most 1
 };
 
 /// How well a disc seen with some number of pixels is placed: a value around one of the three laws.

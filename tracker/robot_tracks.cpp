@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kNobody = -1;
 constexpr int kReadingsToEstablish = 3;
+constexpr int kLeapRank = 2;
 constexpr double kVoteMemory = 0.8;  // per frame: four equal frames outvote all that was before
 constexpr double kGateSigmas = 3.0;
 // Motion is carried on for this long at most: a robot that is out of sight for longer may have
@@ -125,7 +126,7 @@ void RobotTracks::mark_contradicted(std::span<const TrackCandidate> candidates) 
 }
 
 // All pairs within reach. Rank 0: same number at the same place; 1: another number at the same
-// place; 2: same number within reach. Anonymous robots have rank 0 throughout.
+// place; kLeapRank: same number within reach. Anonymous robots have rank 0 throughout.
 void RobotTracks::list_pairs(vision::CaptureTime now, std::span<const TrackCandidate> candidates) {
   pairs_.clear();
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
@@ -143,7 +144,9 @@ void RobotTracks::list_pairs(vision::CaptureTime now, std::span<const TrackCandi
       const bool same_place = distance_m <= settings_.same_place_m + kGateSigmas * sigma_m;
       const bool same_number = track.anonymous || candidate.read_id == track.id;
       if (!same_number && (!same_place || track.contradicted)) continue;
-      const int rank = track.anonymous || (same_number && same_place) ? 0 : same_place ? 1 : 2;
+      const int rank = track.anonymous || (same_number && same_place) ? 0
+                       : same_place                                   ? 1
+                                                                      : kLeapRank;
       pairs_.push_back({rank, distance_m, static_cast<int>(c), static_cast<int>(t)});
     }
   }
@@ -162,8 +165,10 @@ void RobotTracks::assign_pairs(vision::CaptureTime now,
     if (owner != kNobody || taken != 0) continue;
     owner = pair.track;
     taken = 1;
-    continue_track(now, candidates[static_cast<std::size_t>(pair.candidate)],
-                   tracks_[static_cast<std::size_t>(pair.track)]);
+    Track& track = tracks_[static_cast<std::size_t>(pair.track)];
+    // A leap is not following: whatever was read before it has no say after it.
+    if (pair.rank == kLeapRank) track.agreeing_readings = 0;
+    continue_track(now, candidates[static_cast<std::size_t>(pair.candidate)], track);
   }
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (track_of_candidate_[c] == kNobody) start_track(now, candidates[c], static_cast<int>(c));

@@ -45,10 +45,11 @@ struct TrackSettings {
 ///    sigma from where the track was last; distance counts from where its motion puts it now. A
 ///    candidate whose reading differs from the track's number continues it only at the same place,
 ///    where no second robot has room.
-///  - A number that is read is reported at once. Only an established track (three equal readings)
-///    has a say against a reading: it keeps its number while single frames read another, until the
-///    other has more votes (four equal frames). It has no say where its own number is read
-///    elsewhere in this frame: then the robots were moved, and the readings are right.
+///  - A number that is read is reported at once. Only an established track (three equal readings
+///    of a body that did not leap) has a say against a reading: it keeps its number while single
+///    frames read another, until the other has more votes (four equal frames). It has no say where
+///    its own number is read elsewhere in this frame: then the robots were moved, and the readings
+///    are right.
 ///  - A number is reported once per frame. Of two claims the one wins whose established track had
 ///    the number when it was last seen, then the more confident, then the first.
 ///  - Anonymous robots get the lowest free number; a number rests before it is used again.
