@@ -15,9 +15,6 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// No disc is placed better than this, 0.002 px, however clean the picture.
-constexpr double kLeastVariance_px2 = 4e-6;
-
 double microseconds(SteadyClock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
@@ -121,12 +118,7 @@ bool CameraPipeline::measure_discs(const vision::RobotObservation& robot,
   for (std::size_t d = 0; d < static_cast<std::size_t>(robot.disc_count); ++d) {
     const vision::DiscObservation& disc = robot.discs[d];
     const Eigen::Matrix2d jacobian = map().jacobian_m_per_px(disc.centre_px);
-    if (!setup_.variance) {
-      covariances_m2[d] =
-          std::max(disc.variance_px2, kLeastVariance_px2) * jacobian * jacobian.transpose();
-      continue;
-    }
-    const auto covariance_m2 = setup_.variance->covariance_m2(disc, jacobian);
+    const auto covariance_m2 = setup_.variance.covariance_m2(disc, jacobian);
     if (!covariance_m2) return false;
     covariances_m2[d] = *covariance_m2;
   }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +23,8 @@ struct PipelineSetup {
   std::filesystem::path calibration_file;     ///< for messages
   std::vector<vision::MarkerLayout> layouts;  ///< at least one, with different team names
   vision::ColourClasses colours = vision::default_colour_classes();
-  /// Of the discs; nothing: as the detector found it in the scatter of each disc's pixels.
-  std::optional<calibration::PixelCountVariance> variance = std::nullopt;
+  calibration::PixelCountVariance
+      variance;  ///< of the discs' centres; by default from their own pixels
   TrackSettings tracks = {};
 };
 

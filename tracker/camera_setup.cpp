@@ -11,12 +11,12 @@
 namespace nadir::tracker {
 namespace {
 
-std::optional<calibration::PixelCountVariance> variance_of(const CameraConfig& config) {
+calibration::PixelCountVariance variance_of(const CameraConfig& config) {
   if (!config.noise.empty()) return calibration::load_pixel_count_variance(config.noise);
   if (config.variance == VarianceModel::kLaw) {
     return calibration::PixelCountVariance(calibration::LawVariance{});
   }
-  return std::nullopt;
+  return {};
 }
 
 void check_teams(const vision::MarkerLayout& layout, const std::filesystem::path& file) {

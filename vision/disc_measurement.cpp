@@ -31,6 +31,7 @@ constexpr double kShadingError =
 // their weight, ...
 constexpr float kForeignShare = 0.35F;
 constexpr float kForeignLimit = 2.0F;    // ... all of it at sqrt(2) times that
+constexpr double kSmallDisc = 12.0;      // pixels: smaller ones have no inside, only an edge
 constexpr float kLeastContrast = 10.0F;  // grey levels
 constexpr int kMostIterations = 8;
 constexpr double kSettled_px = 0.3;
@@ -298,7 +299,7 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
   disc.pixels = sums.weight;
   disc.expected_pixels = M_PI * radius_px * radius_px;
   disc.variance_px2 = centre_variance_px2(sums, window, ring_deviation(ring, window)) +
-                      sampling_variance_px2 / disc.pixels;
+                      sampling_variance_px2 / disc.pixels * (1.0 + kSmallDisc / disc.pixels);
   return MeasureOutcome::kMeasured;
 }
 

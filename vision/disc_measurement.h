@@ -44,10 +44,11 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
                             const PixelPoint& start, double sampling_variance_px2,
                             DiscMeasurement& disc);
 
-/// Variance of a disc's centre times its pixel count, per axis, that is left in a frame without
-/// noise: measured with the synthetic camera on discs of 14 to 150 pixels, point spread 0.7 px.
-inline constexpr double kSamplingVariance_px2 = 0.010;
+/// What the pixel grid leaves of a centre's error in a frame without noise, per axis: this much
+/// / N (1 + 12 / N), measured with the synthetic camera on discs of 14 to 150 pixels, point spread
+/// 0.7 px.
+inline constexpr double kSamplingVariance_px2 = 0.0065;
 /// The same where two of three colours of every pixel are interpolated from a Bayer mosaic.
-inline constexpr double kDemosaicedSamplingVariance_px2 = 0.06;
+inline constexpr double kDemosaicedSamplingVariance_px2 = 0.027;
 
 }  // namespace nadir::vision
