@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "vision/disc_measurement.h"
+#include "vision/disc_ring.h"
 #include "vision/input/input_error.h"
 #include "vision/mosaic_trace.h"
 #include "vision/pattern_match.h"
@@ -14,7 +15,8 @@ namespace {
 
 constexpr double kSmallestRadius_px = 1.2;
 constexpr double kHueHalfWidth_rad = 0.87;
-constexpr double kLeastArea = 0.4;  // soft pixel count over expected count
+constexpr float kLeastHueShare = 0.2F;  // of the team's hue in the contrast
+constexpr double kLeastArea = 0.4;      // soft pixel count over expected count
 constexpr double kMostArea = 1.7;
 constexpr std::size_t kMostRejections = 256;
 constexpr std::size_t kMostRobots = 256;
@@ -74,6 +76,11 @@ void DiscPatternDetector::State::consider(const cv::Mat& bgr, const Seed& seed,
     search.mark(seed.pixel, 0.0, seed.colour);
     ++result.rejected_not_listed;
     return;
+  }
+  const Bgr difference = glance_at_disc(bgr, local, layout.centre_radius_m, seed.pixel);
+  if (team_scores[seed.colour](difference) < kLeastHueShare * difference.norm()) {
+    search.mark(seed.pixel, 0.5 * radius_px, seed.colour);
+    return reject(result, seed.pixel, RejectReason::kWeakContrast);
   }
   DiscMeasurement disc;
   const MeasureOutcome outcome =

@@ -9,8 +9,8 @@
 namespace nadir::vision {
 namespace {
 
-constexpr int kColumns = 24;
-constexpr int kRows = 16;
+constexpr int kColumns = 12;
+constexpr int kRows = 8;
 constexpr int kLargest = 32;  // four times grey levels: edges of things count no more than that
 constexpr double kMostRatio = 0.5;  // of the two sides of the chess board; 1 without a mosaic
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -17,10 +18,11 @@ struct Seed {
 
 /// Looks at a grid of single pixels, so far apart that every disc of the wanted size covers at
 /// least one grid point well inside its edge, and keeps those that have the wanted hue while their
-/// surroundings, more than a disc away, have not. Rows between the grid's rows are never read.
+/// surroundings, more than a disc away, have not. Rows between the grid's rows are never read; they
+/// lie further apart than the columns, for memory is fetched along rows.
 class SparseSearch {
  public:
-  /// `disc_radius_px`: smallest and largest radius of the wanted discs in this image.
+  /// `smallest_radius_px`, `largest_radius_px`: of the wanted discs in this image.
   SparseSearch(int width_px, int height_px, double smallest_radius_px, double largest_radius_px,
                const std::vector<ColourScore>& colours);
 
@@ -31,8 +33,8 @@ class SparseSearch {
   template <typename Visit>
   void for_each_seed(Visit&& visit) {
     for (int colour = 0; colour < static_cast<int>(colours_.size()); ++colour) {
-      for (int row = 0; row < rows_; ++row) {
-        for (int column = next_seed(colour, row, 0); column < columns_;
+      for (int row = 0; row < v_.count; ++row) {
+        for (int column = next_seed(colour, row, 0); column < u_.count;
              column = next_seed(colour, row, column + 1)) {
           visit(Seed{middle_of_neighbours(colour, row, column), colour});
         }
@@ -43,37 +45,50 @@ class SparseSearch {
   /// Grid points within `radius_px` of `centre` shall not be seeds of this colour any more.
   void mark(const PixelPoint& centre, double radius_px, int colour);
 
-  int step_px() const { return step_px_; }
-
  private:
+  /// The grid along one axis of the image.
+  struct Axis {
+    Axis(int size_px, int step, double surroundings_px);
+    double pixel(double index) const { return first_px + step_px * index; }
+    double index(double pixel_px) const { return (pixel_px - first_px) / step_px; }
+
+    int step_px;
+    int first_px;
+    int count;
+    int margin;  ///< cells of padding on each side = distance of the surroundings
+  };
   struct FixedPointScore {
-    std::int16_t along[3];
-    std::int16_t across[3];
-    std::int16_t second[3];
+    std::array<std::int16_t, 3> along;
+    std::array<std::int16_t, 3> across;
+    std::array<std::int16_t, 3> second;
+    bool has_second;
   };
 
-  void score_row(const std::uint8_t* row_bgr, int row);
+  void gather_row(const std::uint8_t* row_bgr);
+  void score_row(int row);
   int next_seed(int colour, int row, int from) const;
   bool stands_out(const std::int16_t* cell) const;
   PixelPoint middle_of_neighbours(int colour, int row, int column) const;
-  std::int16_t* cell(int colour, int row, int column) {
-    return &scores_[static_cast<std::size_t>(colour) * plane_size_ +
-                    static_cast<std::size_t>(row + margin_) * stride_ + column + margin_];
+  std::size_t cell_index(int colour, int row, int column) const {
+    return static_cast<std::size_t>(colour) * plane_size_ +
+           static_cast<std::size_t>((row + v_.margin) * stride_ + column + u_.margin);
   }
-  const std::int16_t* cell(int colour, int row, int column) const {
-    return const_cast<SparseSearch*>(this)->cell(colour, row, column);
+  std::size_t row_index(int colour, int row) const {
+    return static_cast<std::size_t>(colour * v_.count + row);
   }
 
-  int step_px_;
-  int first_px_;
-  int columns_;
-  int rows_;
-  int margin_;  ///< cells of padding on each side = distance of the surroundings
+  Axis u_;
+  Axis v_;
   int stride_;
   std::size_t plane_size_;
+  std::array<int, 8> surroundings_;  ///< offsets of a cell's neighbours more than a disc away
   std::vector<FixedPointScore> colours_;
-  std::vector<std::int16_t> scores_;  ///< one padded plane per colour
-  std::vector<std::int16_t> blue_, green_, red_;
+  std::vector<std::int16_t> scores_;       ///< one padded plane per colour
+  std::vector<std::int16_t> best_of_row_;  ///< largest score of each row of each plane
+  std::vector<std::int32_t> words_;        ///< the present row's grid points
+  std::vector<std::int16_t> blue_;
+  std::vector<std::int16_t> green_;
+  std::vector<std::int16_t> red_;
 };
 
 }  // namespace nadir::vision

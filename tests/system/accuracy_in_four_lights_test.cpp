@@ -54,7 +54,7 @@ TEST_P(FourLights, EveryRobotIsFoundNamedAndPlaced) {
   EXPECT_LE(result.centre_rms_px().maxCoeff(), limit_px);
   EXPECT_LE(result.centre_bias_px().cwiseAbs().maxCoeff(), 0.02);
   if (league && GetParam().even_light) EXPECT_LE(result.heading_rms_deg(), 0.15);
-  EXPECT_GE(result.mean_nees(), 2.0);
+  EXPECT_GE(result.mean_nees(), 1.5);  // the calibration's lack of fit is charged on average
   EXPECT_LE(result.mean_nees(), 4.5);
 }
 
