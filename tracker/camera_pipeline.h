@@ -23,8 +23,8 @@ struct PipelineSetup {
   std::filesystem::path calibration_file;     ///< for messages
   std::vector<vision::MarkerLayout> layouts;  ///< at least one, with different team names
   vision::ColourClasses colours = vision::default_colour_classes();
-  calibration::PixelCountVariance
-      variance;  ///< of the discs' centres; by default from their own pixels
+  /// Of the discs' centres; by default from their own pixels.
+  calibration::PixelCountVariance variance = {};
   TrackSettings tracks = {};
 };
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <ostream>
 #include <string>
 
 #include "tests/support/accuracy_study.h"
@@ -20,6 +21,8 @@ struct Case {
   const char* scene;
   bool even_light;
 };
+
+void PrintTo(const Case& one, std::ostream* out) { *out << one.scene; }
 
 class FourLights : public testing::TestWithParam<Case> {};
 
@@ -53,7 +56,9 @@ TEST_P(FourLights, EveryRobotIsFoundNamedAndPlaced) {
   const double limit_px = GetParam().even_light ? 0.04 : 0.12;
   EXPECT_LE(result.centre_rms_px().maxCoeff(), limit_px);
   EXPECT_LE(result.centre_bias_px().cwiseAbs().maxCoeff(), 0.02);
-  if (league && GetParam().even_light) EXPECT_LE(result.heading_rms_deg(), 0.15);
+  if (league && GetParam().even_light) {
+    EXPECT_LE(result.heading_rms_deg(), 0.15);
+  }
   EXPECT_GE(result.mean_nees(), 1.5);  // the calibration's lack of fit is charged on average
   EXPECT_LE(result.mean_nees(), 4.5);
 }
