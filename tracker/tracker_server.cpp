@@ -6,6 +6,7 @@
 #include <chrono>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
+#include <thread>
 
 #include "tracker/camera_setup.h"
 #include "vision/sources/open_source.h"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::size_t kQueueLength = 8;
 constexpr std::chrono::milliseconds kPollInterval{50};
+constexpr std::chrono::milliseconds kDiscoveryTime{400};
 
 std::int64_t wall_clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -55,7 +57,18 @@ TrackerServer::TrackerServer(const TrackerConfig& config, Console& console)
 
 TrackerServer::~TrackerServer() = default;
 
+// A recording is over soon: a listener that is there already should not miss its beginning only because
+// the two processes have yet to discover each other. Without a listener nothing waits for long.
+void TrackerServer::wait_for_listener() const {
+  if (!publisher_ || config_.effective_pace() != Pace::kRecorded) return;
+  const auto until = std::chrono::steady_clock::now() + kDiscoveryTime;
+  while (publisher_->status().matched_pose_readers == 0 && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
 int TrackerServer::run(const std::atomic<bool>& stop) {
+  wait_for_listener();
   for (const auto& camera : cameras_) camera->start();
   consume(stop);
   console_.end_progress();

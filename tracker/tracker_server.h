@@ -26,6 +26,7 @@ class TrackerServer {
   int run(const std::atomic<bool>& stop);
 
  private:
+  void wait_for_listener() const;
   void consume(const std::atomic<bool>& stop);
   bool all_done() const;
   void write(const FinishedFrame& frame);

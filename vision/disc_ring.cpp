@@ -6,6 +6,7 @@
 namespace nadir::vision {
 namespace {
 
+constexpr float kMiddleSamples = 1.0F + 0.5F * kRingSamples;
 constexpr float kRingDistance_px = 2.0F;  // of the ring of surroundings from the disc's edge
 
 struct UnitVector {
@@ -79,7 +80,7 @@ Bgr middle_colour(const cv::Mat& bgr, const LocalScale& scale, const PixelPoint&
     for (int i = 0; i < kRingSamples; i += 2) sum[channel] += ring[channel][i];
   }
   return Bgr(static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])) /
-         (1.0F + kRingSamples / 2);
+         kMiddleSamples;
 }
 
 Bgr glance_at_disc(const cv::Mat& bgr, const LocalScale& scale, double radius_m,
