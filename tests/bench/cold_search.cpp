@@ -98,6 +98,8 @@ class Contest {
     frame_.capture_time = capture_time_ + std::chrono::milliseconds(20) * number;
     time(nadir_us, [&] { pipeline_.process(frame_, 0.0, report_); });
     nadir_robots += report_.robots.size();
+    nadir_rejected +=
+        report_.rejected.size() + static_cast<std::size_t>(report_.rejected_not_listed);
 
     const Buffer& third = buffer_of(2);
     time(two_streams_us, [&] { sum = byte_sum_two_streams(bytes(third)); });
@@ -111,11 +113,13 @@ class Contest {
   void forget() {
     for (auto* times_us : {&in_order_us, &two_streams_us, &nadir_us, &opencv_us}) times_us->clear();
     nadir_robots = 0;
+    nadir_rejected = 0;
     opencv_robots = 0;
   }
 
   std::vector<double> in_order_us, two_streams_us, nadir_us, opencv_us;
   std::size_t nadir_robots = 0;
+  std::size_t nadir_rejected = 0;
   std::size_t opencv_robots = 0;
 
  private:
@@ -162,6 +166,7 @@ SearchCosts measure_cold_search(const SearchCase& search_case, int measurements)
   costs.nadir = cost(contest.nadir_us);
   costs.opencv = cost(contest.opencv_us);
   costs.nadir_robots = static_cast<double>(contest.nadir_robots) / measurements;
+  costs.nadir_rejected = static_cast<double>(contest.nadir_rejected) / measurements;
   costs.opencv_robots = static_cast<double>(contest.opencv_robots) / measurements;
   return costs;
 }

@@ -28,15 +28,16 @@ struct SearchCosts {
   std::string name;
   int width_px = 0;
   int height_px = 0;
-  int robots = 0;              ///< in each frame
-  int buffers = 0;             ///< distinct frames in turn
-  int measurements = 0;        ///< of each variant
-  Cost read_in_order;          ///< sum of all bytes, first to last
-  Cost read_two_streams;       ///< the same in two halves side by side
-  Cost nadir;                  ///< tracker::CameraPipeline, frame to poses
-  Cost opencv;                 ///< BlobPipeline
-  double nadir_robots = 0.0;   ///< reported in a frame, mean
-  double opencv_robots = 0.0;  ///< grouped in a frame, mean
+  int robots = 0;               ///< in each frame
+  int buffers = 0;              ///< distinct frames in turn
+  int measurements = 0;         ///< of each variant
+  Cost read_in_order;           ///< sum of all bytes, first to last
+  Cost read_two_streams;        ///< the same in two halves side by side
+  Cost nadir;                   ///< tracker::CameraPipeline, frame to poses
+  Cost opencv;                  ///< BlobPipeline
+  double nadir_robots = 0.0;    ///< reported in a frame, mean
+  double nadir_rejected = 0.0;  ///< candidates looked at and turned down in a frame, mean
+  double opencv_robots = 0.0;   ///< grouped in a frame, mean
 
   /// The faster of the two ways to read.
   double reading_us() const;
