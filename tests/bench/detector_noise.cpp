@@ -94,7 +94,9 @@ void finish(CountNoise& noise) {
   noise.measured.heading_rad2 /= count;
   noise.measured.place_m2 = 0.5 * (noise.x_m2 + noise.y_m2);
   noise.nees /= count;
-  for (PoseVariance& each : noise.published) divide(each, count);
+  for (std::size_t law = 0; law < noise.published.size(); ++law) {
+    divide(noise.published[law], noise.published_robots[law]);
+  }
 }
 
 CountNoise study_one(const vision::Scene& scene, double expected_pixels, int frames,
@@ -122,7 +124,9 @@ CountNoise study_one(const vision::Scene& scene, double expected_pixels, int fra
       add_robot(*robot, truth, noise);
       for (std::size_t law = 0; law < laws.size(); ++law) {
         const auto* same = nearest(reports[law], truth, kMatchRadii * radius_px);
-        if (same != nullptr) add(noise.published[law], published(same->covariance));
+        if (same == nullptr) continue;
+        add(noise.published[law], published(same->covariance));
+        ++noise.published_robots[law];
       }
     }
     noise.false_robots += static_cast<int>(reports[0].robots.size()) - (noise.found - found_before);

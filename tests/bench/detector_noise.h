@@ -34,7 +34,9 @@ struct CountNoise {
   double x_m2 = 0.0;     ///< mean squared error of each axis
   double y_m2 = 0.0;
   PoseVariance measured;
-  std::array<PoseVariance, kVarianceLaws.size()> published;  ///< mean of what is published
+  /// Mean of what is published for the robots found; a law may take fewer for a measurement.
+  std::array<PoseVariance, kVarianceLaws.size()> published;
+  std::array<int, kVarianceLaws.size()> published_robots{};
   double nees = 0.0;  ///< of the default law, mean; 3 if the covariance holds
 
   double found_share() const { return static_cast<double>(found) / robots; }

@@ -84,7 +84,7 @@ PlotPanel panel(const std::vector<NoiseStudy>& studies, const calibration::Table
   made.x_from = kFewestPixels;
   made.x_to = kMostPixels;
   made.x_ticks = {5, 10, 20, 30, 40, 100, 200};
-  made.y_from = place ? 1e-9 : 1e-7;
+  made.y_from = place ? 1e-10 : 1e-7;
   made.y_to = place ? 1e-4 : 1.0;
   made.series = {papers_series(papers, part), law_series(studies.front(), part)};
   for (std::size_t i = 0; i < studies.size(); ++i) {
