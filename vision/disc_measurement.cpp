@@ -16,8 +16,8 @@ constexpr ShareLimits kFindLimits{0.10F, 0.60F};
 constexpr ShareLimits kMeasureLimits{0.30F, 0.70F};
 constexpr float kManyRows_px = 4.0F;  // radius from which every second row finds the disc
 constexpr int kMostIterations = 8;
-constexpr double kSettled_px = 0.3;
-constexpr double kConverged_px = 0.03;
+constexpr double kSettled_px = 0.4;
+constexpr double kConverged_px = 0.04;
 constexpr float kLeastContrast = 10.0F;  // grey levels
 constexpr int kLeastInside = 6;          // pixels, for statistics of the disc's inside
 // Explained sum of squares over scatter that chance may bring.

@@ -14,7 +14,7 @@ namespace nadir::vision {
 namespace {
 
 constexpr double kSmallestRadius_px = 1.2;
-constexpr double kHueHalfWidth_rad = 0.87;
+constexpr double kHueHalfWidth_rad = 0.70;
 constexpr float kLeastHueShare = 0.2F;  // of the team's hue in the contrast
 constexpr double kLeastArea = 0.4;      // soft pixel count over expected count
 constexpr double kMostArea = 1.7;

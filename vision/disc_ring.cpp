@@ -9,21 +9,17 @@ namespace {
 constexpr float kMiddleSamples = 1.0F + 0.5F * kRingSamples;
 constexpr float kRingDistance_px = 2.0F;  // of the ring of surroundings from the disc's edge
 
-struct UnitVector {
-  float x;
-  float y;
-};
+using Sixteen = std::array<float, kRingSamples>;
 
-std::array<UnitVector, kRingSamples> make_directions() {
-  std::array<UnitVector, kRingSamples> directions{};
+Sixteen directions(double (*component)(double)) {
+  Sixteen values{};
   for (int i = 0; i < kRingSamples; ++i) {
-    const double angle_rad = 2.0 * M_PI * i / kRingSamples;
-    directions[i] = {static_cast<float>(std::cos(angle_rad)),
-                     static_cast<float>(std::sin(angle_rad))};
+    values[i] = static_cast<float>(component(2.0 * M_PI * i / kRingSamples));
   }
-  return directions;
+  return values;
 }
-const std::array<UnitVector, kRingSamples> kDirections = make_directions();
+const Sixteen kDirectionX = directions([](double angle_rad) { return std::cos(angle_rad); });
+const Sixteen kDirectionY = directions([](double angle_rad) { return std::sin(angle_rad); });
 
 const std::uint8_t* nearest_pixel(const cv::Mat& bgr, float u_px, float v_px) {
   const int u = std::clamp(static_cast<int>(u_px + 0.5F), 0, bgr.cols - 1);
@@ -46,16 +42,33 @@ std::uint8_t median_of(const std::array<std::uint8_t, kRingSamples>& values) {
 
 }  // namespace
 
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx2", "default")))
+#endif
 void sample_ring(const cv::Mat& bgr, const LocalScale& scale, const PixelPoint& centre,
                  float radius_px, Ring& ring) {
   const Eigen::Matrix2f axes = scale.pixels_per_metre * (radius_px / scale.scale_px_per_m);
-  const auto u = static_cast<float>(centre.x());
-  const auto v = static_cast<float>(centre.y());
+  const float ux = axes(0, 0);
+  const float uy = axes(0, 1);
+  const float vx = axes(1, 0);
+  const float vy = axes(1, 1);
+  const float u0 =
+      static_cast<float>(centre.x()) + 0.5F;  // truncation then rounds to the nearest pixel
+  const float v0 = static_cast<float>(centre.y()) + 0.5F;
+  const int right = bgr.cols - 1;
+  const int bottom = bgr.rows - 1;
+  const int row_bytes = static_cast<int>(bgr.step);
+  std::array<int, kRingSamples> place;
   for (int i = 0; i < kRingSamples; ++i) {
-    const UnitVector d = kDirections[i];
-    const std::uint8_t* pixel = nearest_pixel(bgr, u + axes(0, 0) * d.x + axes(0, 1) * d.y,
-                                              v + axes(1, 0) * d.x + axes(1, 1) * d.y);
-    for (int channel = 0; channel < 3; ++channel) ring[channel][i] = pixel[channel];
+    const int u = static_cast<int>(u0 + ux * kDirectionX[i] + uy * kDirectionY[i]);
+    const int v = static_cast<int>(v0 + vx * kDirectionX[i] + vy * kDirectionY[i]);
+    place[i] = std::min(std::max(v, 0), bottom) * row_bytes + 3 * std::min(std::max(u, 0), right);
+  }
+  for (int i = 0; i < kRingSamples; ++i) {
+    const std::uint8_t* pixel = bgr.data + place[i];
+    ring[0][i] = pixel[0];
+    ring[1][i] = pixel[1];
+    ring[2][i] = pixel[2];
   }
 }
 

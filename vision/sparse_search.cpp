@@ -16,11 +16,13 @@ constexpr int kFixedPointShift = 5;
 // A grid point must have this much of the wanted hue: grey levels, and share of its brightness (1 /
 // 8).
 constexpr std::int16_t kLeastScore = 8;
-constexpr int kBrightnessShift = 3;
+constexpr int kBrightnessShare = 3;
+constexpr int kLeastDifference = 10;  // from its surroundings: more than noise makes
 constexpr std::int16_t kNothing = -1000;
 constexpr int kCellsAtOnce = 8;
-// Neighbours, out of 8, that may have the same hue (another robot's disc, a line).
-constexpr int kMostAlikeNeighbours = 2;
+// Neighbours, out of 8, that may have the same hue: another robot's disc, but not a line, which
+// goes on in two directions.
+constexpr int kMostAlikeNeighbours = 1;
 constexpr std::size_t kCacheLineBytes = 64;
 
 int grid_step_px(double step_per_radius, double radius_px) {
@@ -126,7 +128,7 @@ void SparseSearch::score_row(int row) {
       const std::int16_t brightest = std::max(std::max(b[i], g[i]), r[i]);
       out[i] = static_cast<std::int16_t>(dot(f.along, b[i], g[i], r[i]) -
                                          magnitude(dot(f.across, b[i], g[i], r[i])) -
-                                         (brightest >> kBrightnessShift));
+                                         (kBrightnessShare * brightest >> 4));
       best = std::max(best, out[i]);
     }
     if (f.has_second) {  // white and black: no hue at all
@@ -160,10 +162,10 @@ int SparseSearch::next_seed(int colour, int row, int from) const {
 }
 
 bool SparseSearch::stands_out(const std::int16_t* cell) const {
-  const int half = *cell / 2;
+  const int different = std::min(*cell / 2, *cell - kLeastDifference);
   int alike = 0;
   for (const int offset : surroundings_) {
-    alike += cell[offset] > half ? 1 : 0;
+    alike += cell[offset] > different ? 1 : 0;
     if (alike > kMostAlikeNeighbours) return false;
   }
   return true;
