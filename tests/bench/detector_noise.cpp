@@ -160,6 +160,7 @@ NoiseStudy study_detector_noise(const std::string& sensor, const vision::Scene& 
 
 std::vector<double> in_equal_ratios(double first, double last, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     values.push_back(first * std::pow(last / first, static_cast<double>(i) / (count - 1)));
   }
