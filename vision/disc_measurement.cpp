@@ -16,7 +16,8 @@ constexpr ShareLimits kFindLimits{0.10F, 0.60F};
 constexpr ShareLimits kMeasureLimits{0.30F, 0.70F};
 constexpr float kManyRows_px = 4.0F;  // radius from which every second row finds the disc
 constexpr int kMostIterations = 8;
-constexpr double kSettled_px = 0.4;
+constexpr float kSettledPerRadius = 0.10F;  // a step of this size does not change the colours seen
+constexpr float kSettled_px = 0.3F;
 constexpr double kConverged_px = 0.04;
 constexpr float kLeastContrast = 10.0F;  // grey levels
 constexpr int kLeastInside = 6;          // pixels, for statistics of the disc's inside
@@ -99,6 +100,8 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
   WeightSums sums;
   InsideShares inside;
   Ring ring;
+  const double settled_px =
+      static_cast<double>(std::max(kSettled_px, kSettledPerRadius * window.radius_px));
   bool settled = false;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     if (reaches_over_border(bgr, window)) return MeasureOutcome::kOutsideImage;
@@ -112,7 +115,7 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
     window.centre += step;
     if ((window.centre - start).norm() > farthest_px) return MeasureOutcome::kDriftsAway;
     if (settled && step.norm() < kConverged_px) break;
-    if (!settled && step.norm() < kSettled_px) {
+    if (!settled && step.norm() < settled_px) {
       settled = true;
       inside = inside_shares(bgr, window);
       set_shading(inside, window);

@@ -7,14 +7,14 @@
 namespace nadir::vision {
 namespace {
 
-// Steps over the smallest disc's radius: no place in a disc is then further than 0.63 radii from a
-// grid point, which lies well inside the edge.
+// Steps over the smallest disc's radius: a disc's centre is then at most 0.68 radii from a grid
+// point, which lies well inside the edge.
 constexpr double kRowStepPerRadius = 1.1;
-constexpr double kColumnStepPerRadius = 0.6;
+constexpr double kColumnStepPerRadius = 0.8;
 constexpr double kBlur_px = 1.5;
 constexpr int kFixedPointShift = 5;
-// A grid point must have this much of the wanted hue: grey levels, and share of its brightness (1 /
-// 8).
+// A grid point must have this much of the wanted hue: grey levels, after sixteenths of its
+// brightness.
 constexpr std::int16_t kLeastScore = 8;
 constexpr int kBrightnessShare = 3;
 constexpr int kLeastDifference = 10;  // from its surroundings: more than noise makes
@@ -50,9 +50,9 @@ SparseSearch::SparseSearch(int width_px, int height_px, double smallest_radius_p
                            double largest_radius_px, const std::vector<ColourScore>& colours)
     // The surroundings must lie outside the disc from wherever in it the grid point is.
     : u_(width_px, grid_step_px(kColumnStepPerRadius, smallest_radius_px),
-         1.63 * largest_radius_px + kBlur_px),
+         1.68 * largest_radius_px + kBlur_px),
       v_(height_px, grid_step_px(kRowStepPerRadius, smallest_radius_px),
-         1.63 * largest_radius_px + kBlur_px),
+         1.68 * largest_radius_px + kBlur_px),
       stride_(u_.count + 2 * u_.margin),
       plane_size_(static_cast<std::size_t>(stride_) *
                   static_cast<std::size_t>(v_.count + 2 * v_.margin)),
