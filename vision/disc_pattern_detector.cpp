@@ -43,11 +43,15 @@ struct DiscPatternDetector::State {
                layout.centre_radius_m * scale.largest_pixels_per_metre(), team_scores),
         pattern(layout, colours) {
     shared.reserve(kMostRobots);
+    for (const Disc& disc : layout.outer) {
+      reach_m = std::max(reach_m, disc.position_robot_m.norm() + disc.radius_m);
+    }
   }
 
   void consider(const cv::Mat& bgr, const Seed& seed, DetectionResult& result);
   void reject(DetectionResult& result, const PixelPoint& place, RejectReason reason) const;
   void resolve_shared_discs(DetectionResult& result);
+  void tidy_rejected(DetectionResult& result) const;
 
   MarkerLayout layout;
   PixelScaleGrid scale;
@@ -57,6 +61,7 @@ struct DiscPatternDetector::State {
   int candidates = 0;
   double sampling_variance_px2 = kSamplingVariance_px2;
   std::vector<char> shared;
+  double reach_m = 0.0;  ///< from the robot's origin to the rim of its outermost disc
 };
 
 void DiscPatternDetector::State::reject(DetectionResult& result, const PixelPoint& place,
@@ -144,6 +149,29 @@ void DiscPatternDetector::State::resolve_shared_discs(DetectionResult& result) {
   robots.resize(kept);
 }
 
+// One line for each thing that was turned down: not for places on a robot that was found after all,
+// and not again for the other pixels of the same thing.
+void DiscPatternDetector::State::tidy_rejected(DetectionResult& result) const {
+  auto& rejected = result.rejected;
+  std::size_t kept = 0;
+  for (const RejectedCandidate& each : rejected) {
+    const double scale_px_per_m =
+        static_cast<double>(local_scale(scale, each.centre_px).scale_px_per_m);
+    const auto near = [&](const PixelPoint& place, double distance_m) {
+      return (place - each.centre_px).norm() < distance_m * scale_px_per_m;
+    };
+    const auto first = rejected.begin();
+    const bool known =
+        std::any_of(result.robots.begin(), result.robots.end(),
+                    [&](const auto& robot) { return near(robot.discs[0].centre_px, reach_m); }) ||
+        std::any_of(first, first + static_cast<std::ptrdiff_t>(kept), [&](const auto& earlier) {
+          return near(earlier.centre_px, 1.5 * layout.centre_radius_m);
+        });
+    if (!known) rejected[kept++] = each;
+  }
+  rejected.resize(kept);
+}
+
 DiscPatternDetector::DiscPatternDetector(const MarkerLayout& layout, const PixelScaleGrid& scale,
                                          const ColourClasses& colours) {
   double smallest_radius_m = layout.centre_radius_m;
@@ -175,6 +203,7 @@ void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
   state.search.scan(bgr);
   state.search.for_each_seed([&](const Seed& seed) { state.consider(bgr, seed, result); });
   state.resolve_shared_discs(result);
+  state.tidy_rejected(result);
 }
 
 }  // namespace nadir::vision
