@@ -14,7 +14,9 @@ namespace {
 // what lies behind a thin rim.
 constexpr ShareLimits kFindLimits{0.10F, 0.60F};
 constexpr ShareLimits kMeasureLimits{0.30F, 0.70F};
-constexpr float kManyRows_px = 4.0F;  // radius from which every second row finds the disc
+// Radius from which every second row finds a disc, and from which it measures it well enough.
+constexpr float kFindBySecondRow_px = 4.0F;
+constexpr float kMeasureBySecondRow_px = 8.0F;
 constexpr int kMostIterations = 8;
 constexpr float kSettledPerRadius = 0.10F;  // a step of this size does not change the colours seen
 constexpr float kSettled_px = 0.3F;
@@ -95,7 +97,7 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
   window.radius_px = static_cast<float>(radius_m) * scale.scale_px_per_m;
   window.to_round = scale.metres_per_pixel * scale.scale_px_per_m;
   window.limits = kFindLimits;
-  window.row_step = window.radius_px > kManyRows_px ? 2 : 1;
+  window.row_step = window.radius_px > kFindBySecondRow_px ? 2 : 1;
   const double farthest_px = 1.5 * static_cast<double>(window.radius_px) + 1.0;
   WeightSums sums;
   InsideShares inside;
@@ -120,14 +122,15 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
       inside = inside_shares(bgr, window);
       set_shading(inside, window);
       window.limits = kMeasureLimits;
-      window.row_step = 1;
+      window.row_step = window.radius_px > kMeasureBySecondRow_px ? 2 : 1;
     }
   }
   disc.centre_px = window.centre;
-  disc.pixels = static_cast<double>(sums.weight);
+  const auto pixels_used = static_cast<double>(sums.weight);
+  disc.pixels = pixels_used * window.row_step;
   disc.expected_pixels = M_PI * static_cast<double>(window.radius_px * window.radius_px);
   disc.variance_px2 = centre_variance_px2(sums, inside, ring, window) +
-                      sampling_variance_px2 / disc.pixels * (1.0 + kSmallDisc / disc.pixels);
+                      sampling_variance_px2 / pixels_used * (1.0 + kSmallDisc / pixels_used);
   return MeasureOutcome::kMeasured;
 }
 

@@ -20,7 +20,8 @@ constexpr double kLeastArea = 0.4;      // soft pixel count over expected count
 constexpr double kMostArea = 1.7;
 constexpr std::size_t kMostRejections = 256;
 constexpr std::size_t kMostRobots = 256;
-constexpr int kMostCandidates = 4000;  // a picture full of confetti must not take for ever
+constexpr unsigned kFramesPerMosaicCheck = 16;  // a camera keeps its sensor
+constexpr int kMostCandidates = 4000;           // a picture full of confetti must not take for ever
 
 std::vector<ColourScore> centre_scores(const MarkerLayout& layout, const ColourClasses& colours) {
   std::vector<ColourScore> scores;
@@ -60,6 +61,7 @@ struct DiscPatternDetector::State {
   PatternMatch pattern;
   int candidates = 0;
   double sampling_variance_px2 = kSamplingVariance_px2;
+  unsigned frames = 0;
   std::vector<char> shared;
   double reach_m = 0.0;  ///< from the robot's origin to the rim of its outermost disc
 };
@@ -198,8 +200,10 @@ void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
   result.rejected.reserve(kMostRejections);
   State& state = *state_;
   state.candidates = 0;
-  state.sampling_variance_px2 =
-      looks_demosaiced(bgr) ? kDemosaicedSamplingVariance_px2 : kSamplingVariance_px2;
+  if (state.frames++ % kFramesPerMosaicCheck == 0) {
+    state.sampling_variance_px2 =
+        looks_demosaiced(bgr) ? kDemosaicedSamplingVariance_px2 : kSamplingVariance_px2;
+  }
   state.search.scan(bgr);
   state.search.for_each_seed([&](const Seed& seed) { state.consider(bgr, seed, result); });
   state.resolve_shared_discs(result);

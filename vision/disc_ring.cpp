@@ -28,7 +28,7 @@ const std::uint8_t* nearest_pixel(const cv::Mat& bgr, float u_px, float v_px) {
 }
 
 // Rank by counting: sixteen bytes at once, and no branches.
-std::uint8_t median_of(const std::array<std::uint8_t, kRingSamples>& values) {
+inline std::uint8_t median_of(const std::array<std::uint8_t, kRingSamples>& values) {
   std::array<std::uint8_t, kRingSamples> not_larger{};  // for each value, how many are not larger
   for (const std::uint8_t value : values) {
     for (int i = 0; i < kRingSamples; ++i) not_larger[i] += value <= values[i] ? 1 : 0;
@@ -77,6 +77,9 @@ void sample_surroundings(const cv::Mat& bgr, const LocalScale& scale, const Pixe
   sample_ring(bgr, scale, centre, disc_radius_px + kRingDistance_px, ring);
 }
 
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx2", "default")))
+#endif
 Bgr median_of_ring(const Ring& ring) {
   return {static_cast<float>(median_of(ring[0])), static_cast<float>(median_of(ring[1])),
           static_cast<float>(median_of(ring[2]))};

@@ -79,7 +79,7 @@ void SparseSearch::scan(const cv::Mat& bgr) {
   const std::size_t row_bytes = 3 * static_cast<std::size_t>(bgr.cols);
   for (int row = 0; row < v_.count; ++row) {
     // Rows in between are skipped, which the processor does not foresee: it is told the next one.
-    const int next_row = std::min(row + 1, v_.count - 1);
+    const int next_row = std::min(row + 2, v_.count - 1);
     const std::uint8_t* const next = bgr.ptr<std::uint8_t>(v_.first_px + next_row * v_.step_px);
     for (std::size_t byte = 0; byte < row_bytes; byte += kCacheLineBytes) {
       __builtin_prefetch(next + byte);
