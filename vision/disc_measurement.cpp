@@ -14,9 +14,9 @@ namespace {
 // what lies behind a thin rim.
 constexpr ShareLimits kFindLimits{0.10F, 0.60F};
 constexpr ShareLimits kMeasureLimits{0.30F, 0.70F};
-// Radius from which every second row finds a disc, and from which it measures it well enough.
+// Radius from which every second row finds a disc. (To measure it they are too few: 0.04 px of
+// error.)
 constexpr float kFindBySecondRow_px = 4.0F;
-constexpr float kMeasureBySecondRow_px = 8.0F;
 constexpr int kMostIterations = 8;
 constexpr float kSettledPerRadius = 0.10F;  // a step of this size does not change the colours seen
 constexpr float kSettled_px = 0.3F;
@@ -122,15 +122,14 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
       inside = inside_shares(bgr, window);
       set_shading(inside, window);
       window.limits = kMeasureLimits;
-      window.row_step = window.radius_px > kMeasureBySecondRow_px ? 2 : 1;
+      window.row_step = 1;
     }
   }
   disc.centre_px = window.centre;
-  const auto pixels_used = static_cast<double>(sums.weight);
-  disc.pixels = pixels_used * window.row_step;
+  disc.pixels = static_cast<double>(sums.weight);
   disc.expected_pixels = M_PI * static_cast<double>(window.radius_px * window.radius_px);
   disc.variance_px2 = centre_variance_px2(sums, inside, ring, window) +
-                      sampling_variance_px2 / pixels_used * (1.0 + kSmallDisc / pixels_used);
+                      sampling_variance_px2 / disc.pixels * (1.0 + kSmallDisc / disc.pixels);
   return MeasureOutcome::kMeasured;
 }
 
