@@ -1,6 +1,7 @@
 #include "vision/disc_pattern_detector.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 #include "vision/disc_measurement.h"
@@ -80,9 +81,7 @@ void DiscPatternDetector::State::consider(const cv::Mat& bgr, const Seed& seed,
   const LocalScale local = local_scale(scale, seed.pixel);
   const double radius_px = layout.centre_radius_m * static_cast<double>(local.scale_px_per_m);
   if (++candidates > kMostCandidates) {
-    search.mark(seed.pixel, 0.0, seed.colour);
-    ++result.rejected_not_listed;
-    return;
+    return reject(result, seed.pixel, RejectReason::kTooManyCandidates);
   }
   const Bgr difference = glance_at_disc(bgr, local, layout.centre_radius_m, seed.pixel);
   if (team_scores[seed.colour](difference) < kLeastHueShare * difference.norm()) {
@@ -195,6 +194,10 @@ DiscPatternDetector::DiscPatternDetector(DiscPatternDetector&&) noexcept = defau
 DiscPatternDetector& DiscPatternDetector::operator=(DiscPatternDetector&&) noexcept = default;
 
 void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
+  if (bgr.type() != CV_8UC3 || bgr.cols != state_->scale.width_px() ||
+      bgr.rows != state_->scale.height_px()) {
+    throw std::invalid_argument("DiscPatternDetector: frame is not CV_8UC3 of the scale's size");
+  }
   result.clear();
   result.robots.reserve(kMostRobots);
   result.rejected.reserve(kMostRejections);

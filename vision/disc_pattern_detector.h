@@ -24,7 +24,8 @@ class DiscPatternDetector {
   DiscPatternDetector& operator=(DiscPatternDetector&&) noexcept;
 
   /// `bgr` is CV_8UC3 of the scale grid's size. `result` is cleared and filled; no memory is
-  /// allocated after the first call. An identity may be found twice: the tracker decides.
+  /// allocated after the first call. An identity may be found twice: the tracker decides. Throws
+  /// std::invalid_argument for a frame of another type or size.
   void detect(const cv::Mat& bgr, DetectionResult& result);
 
  private:

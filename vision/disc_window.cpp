@@ -17,6 +17,8 @@ constexpr float kForeignShare = 0.35F;
 constexpr float kForeignLimit = 2.0F;  // ... all of it at sqrt(2) times that
 constexpr float kDarkest = 0.3F;       // limits of the light relative to the disc's middle
 constexpr float kBrightest = 1.7F;
+constexpr float kFarAway_px = 1e4F;
+constexpr float kFitted = 3.0F;  // of the inside's shares: mean and two slopes
 
 // Eight pixels at once, in the compiler's portable vectors.
 constexpr int kLanes = 8;
@@ -32,8 +34,9 @@ struct PixelRange {
 
 // Pixels within `reach_px` of the window's centre, in the image.
 PixelRange range_of(const cv::Mat& bgr, const DiscWindow& w, float reach_px) {
-  const float half_u = reach_px * std::max(1.0F, 1.0F / w.to_round.col(0).norm());
-  const float half_v = reach_px * std::max(1.0F, 1.0F / w.to_round.col(1).norm());
+  // Rows of the inverse, whose determinant is 1 or -1: the ellipse's half width and half height.
+  const float half_u = reach_px * w.to_round.col(1).norm();
+  const float half_v = reach_px * w.to_round.col(0).norm();
   const auto u = static_cast<float>(w.centre.x());
   const auto v = static_cast<float>(w.centre.y());
   return {std::max(0, static_cast<int>(std::ceil(u - half_u))),
@@ -77,13 +80,15 @@ sum_weights(const cv::Mat& bgr, const DiscWindow& w) {
     const std::uint8_t* row = bgr.ptr<std::uint8_t>(v);
     const float dv = static_cast<float>(v) - centre_v;
     for (int u = range.u_begin; u <= range.u_end; u += kLanes) {
+      Floats du = lane_offset + (static_cast<float>(u) - centre_u);
       // A pixel is fetched as four bytes, of which the fourth is the next one's: not past the row's
-      // end.
+      // end, beyond which everything is too far away to count.
       std::uint8_t tail[3 * kLanes + 1] = {};
       const std::uint8_t* pixel = row + 3 * u;
       if (u + kLanes >= bgr.cols) {
         std::memcpy(tail, pixel, 3 * static_cast<std::size_t>(bgr.cols - u));
         pixel = tail;
+        du = lane_offset < static_cast<float>(bgr.cols - u) ? du : zero + kFarAway_px;
       }
       std::int32_t words[kLanes];
       for (int i = 0; i < kLanes; ++i) std::memcpy(&words[i], pixel + 3 * i, 4);
@@ -93,7 +98,6 @@ sum_weights(const cv::Mat& bgr, const DiscWindow& w) {
       const Floats green = __builtin_convertvector((word >> 8) & 255, Floats) - w.surroundings[1];
       const Floats red = __builtin_convertvector((word >> 16) & 255, Floats) - w.surroundings[2];
 
-      const Floats du = lane_offset + (static_cast<float>(u) - centre_u);
       const Floats x = w.to_round(0, 0) * du + w.to_round(0, 1) * dv;
       const Floats y = w.to_round(1, 0) * du + w.to_round(1, 1) * dv;
       const Floats distance2 = x * x + y * y;
@@ -164,7 +168,8 @@ InsideShares inside_shares(const cv::Mat& bgr, const DiscWindow& w) {
   inside.slope_u = moment.x() / offset2_sum.x();
   inside.slope_v = moment.y() / offset2_sum.y();
   inside.explained = moment.cwiseAbs2().cwiseQuotient(offset2_sum).sum();
-  inside.scatter = std::max(0.0F, share2_sum - share_sum * inside.mean - inside.explained) / count;
+  const float left = share2_sum - share_sum * inside.mean - inside.explained;
+  inside.scatter = std::max(0.0F, left) / std::max(1.0F, count - kFitted);
   return inside;
 }
 

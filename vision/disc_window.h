@@ -19,7 +19,8 @@ struct ShareLimits {
 struct DiscWindow {
   PixelPoint centre = PixelPoint::Zero();
   float radius_px = 0.0F;
-  Eigen::Matrix2f to_round;  ///< pixel offset -> offset in which the disc is a circle of radius_px
+  /// Pixel offset -> offset in which the disc is a circle of radius_px; determinant 1 or -1.
+  Eigen::Matrix2f to_round;
   Bgr surroundings = Bgr::Zero();
   Bgr difference = Bgr::Zero();  ///< of the disc's colour from its surroundings, not zero
   ShareLimits limits{0.0F, 1.0F};
@@ -51,7 +52,7 @@ struct InsideShares {
   float slope_u = 0.0F;  ///< share per pixel, least squares
   float slope_v = 0.0F;
   float explained = 0.0F;  ///< sum of squares that the slopes explain
-  float scatter = 0.0F;    ///< mean square about the slopes
+  float scatter = 0.0F;    ///< variance about the slopes, without bias
 };
 
 InsideShares inside_shares(const cv::Mat& bgr, const DiscWindow& window);

@@ -16,7 +16,7 @@ constexpr float kLeastHue = 6.0F;  // grey levels
 // Soft pixel count over expected count.
 constexpr double kLeastArea = 0.4;
 constexpr double kMostArea = 1.9;
-constexpr double kTolerancePerRadius = 0.3;  // of the layout's fit
+constexpr double kTolerancePerRadius = 0.2;  // of the layout's fit
 constexpr double kTolerance_px = 0.3;
 
 Bgr pixel_at(const cv::Mat& bgr, float u_px, float v_px) {
@@ -61,13 +61,12 @@ PatternMatch::PatternMatch(const MarkerLayout& layout, const ColourClasses& colo
   }
 }
 
-int PatternMatch::best_heading(const cv::Mat& bgr, const LocalScale& scale,
-                               const DiscMeasurement& centre, float& score) const {
+PatternMatch::Heading PatternMatch::best_heading(const cv::Mat& bgr, const LocalScale& scale,
+                                                 const DiscMeasurement& centre) const {
   const Eigen::Vector2f origin = centre.centre_px.cast<float>();
   const auto right = static_cast<float>(bgr.cols - 1);
   const auto bottom = static_cast<float>(bgr.rows - 1);
-  int best = -1;
-  float best_worst = 0.0F;
+  Heading best;
   float best_sum = 0.0F;
   for (int heading = 0; heading < static_cast<int>(headings_.size()); ++heading) {
     const Eigen::Vector2f d = headings_[heading];
@@ -80,6 +79,7 @@ int PatternMatch::best_heading(const cv::Mat& bgr, const LocalScale& scale,
                                                             d.y() * p.x() + d.x() * p.y());
       if (!(place.x() >= 0.0F && place.y() >= 0.0F && place.x() <= right && place.y() <= bottom)) {
         worst = -1.0F;
+        best.any_outside = true;
         break;
       }
       const Bgr difference = pixel_at(bgr, place.x(), place.y()) - centre.surroundings;
@@ -90,19 +90,19 @@ int PatternMatch::best_heading(const cv::Mat& bgr, const LocalScale& scale,
       if (worst < kLeastHue) break;
     }
     // The worst disc decides whether the heading can be; the sum which of those fits best.
-    if (worst >= kLeastHue && worst + sum > best_worst + best_sum) {
-      best = heading;
-      best_worst = worst;
+    if (worst >= kLeastHue && worst + sum > best.score + best_sum) {
+      best.index = heading;
+      best.score = worst;
       best_sum = sum;
     }
   }
-  score = best_worst;
   return best;
 }
 
 bool PatternMatch::measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale, int heading,
-                                       const DiscMeasurement& centre, double sampling_variance_px2,
-                                       std::array<DiscMeasurement, kMaxDiscs>& discs) const {
+                                       double sampling_variance_px2,
+                                       std::array<DiscMeasurement, kMaxDiscs>& discs,
+                                       RejectReason& reason) const {
   const Eigen::Vector2f d = headings_[heading];
   for (std::size_t i = 0; i < outer_.size(); ++i) {
     const Eigen::Vector2f& p = outer_[i].position_m;
@@ -110,11 +110,11 @@ bool PatternMatch::measure_outer_discs(const cv::Mat& bgr, const LocalScale& sca
         scale.pixels_per_metre *
         Eigen::Vector2f(d.x() * p.x() - d.y() * p.y(), d.y() * p.x() + d.x() * p.y());
     DiscMeasurement& disc = discs[i + 1];
-    const PixelPoint start = centre.centre_px + offset_px.cast<double>();
-    if (measure_disc(bgr, scale, outer_[i].radius_m, start, sampling_variance_px2, disc) !=
-        MeasureOutcome::kMeasured) {
-      return false;
-    }
+    const PixelPoint start = discs[0].centre_px + offset_px.cast<double>();
+    const MeasureOutcome outcome =
+        measure_disc(bgr, scale, outer_[i].radius_m, start, sampling_variance_px2, disc);
+    if (outcome == MeasureOutcome::kOutsideImage) reason = RejectReason::kOutsideImage;
+    if (outcome != MeasureOutcome::kMeasured) return false;
     const double area = disc.pixels / disc.expected_pixels;
     if (area < kLeastArea || area > kMostArea) return false;
   }
@@ -195,14 +195,17 @@ double PatternMatch::fit_error_px(const LocalScale& scale, const RobotObservatio
 bool PatternMatch::match(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre,
                          int team, double sampling_variance_px2, RobotObservation& robot,
                          RejectReason& reason) const {
-  reason = RejectReason::kNoHeadingMarker;
-  float hue = 0.0F;
-  const int heading = best_heading(bgr, scale, centre, hue);
-  if (heading < 0 || hue < kLeastHueShare * static_cast<float>(centre.contrast)) return false;
+  const Heading heading = best_heading(bgr, scale, centre);
+  reason = heading.any_outside ? RejectReason::kOutsideImage : RejectReason::kNoHeadingMarker;
+  if (heading.index < 0 || heading.score < kLeastHueShare * static_cast<float>(centre.contrast)) {
+    return false;
+  }
   std::array<DiscMeasurement, kMaxDiscs> discs;
   discs[0] = centre;
   reason = RejectReason::kPatternDoesNotFit;
-  if (!measure_outer_discs(bgr, scale, heading, centre, sampling_variance_px2, discs)) return false;
+  if (!measure_outer_discs(bgr, scale, heading.index, sampling_variance_px2, discs, reason)) {
+    return false;
+  }
 
   robot.team = team;
   robot.identity = -1;

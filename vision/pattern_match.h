@@ -29,17 +29,24 @@ class PatternMatch {
     std::vector<Colour> colours;  ///< that this disc may have
     std::vector<ColourScore> scores;
   };
+  struct Heading {
+    int index = -1;            ///< into headings_, -1: none has all its discs
+    float score = 0.0F;        ///< of its worst disc
+    bool any_outside = false;  ///< some heading has a disc out of the image
+  };
   struct Reading {
     Colour colour = Colour::kBlack;
     float score = 0.0F;   ///< of the best colour
     float margin = 1.0F;  ///< 0 to 1: how far the second best is behind
   };
 
-  int best_heading(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre,
-                   float& score) const;
+  Heading best_heading(const cv::Mat& bgr, const LocalScale& scale,
+                       const DiscMeasurement& centre) const;
+  /// Those of disc 1 and up, around disc 0.
   bool measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale, int heading,
-                           const DiscMeasurement& centre, double sampling_variance_px2,
-                           std::array<DiscMeasurement, kMaxDiscs>& discs) const;
+                           double sampling_variance_px2,
+                           std::array<DiscMeasurement, kMaxDiscs>& discs,
+                           RejectReason& reason) const;
   Reading read_colour(const OuterDisc& outer, const Bgr& difference) const;
   int find_identity(const RobotObservation& robot) const;
   double fit_error_px(const LocalScale& scale, const RobotObservation& robot) const;

@@ -19,6 +19,8 @@ constexpr std::int16_t kLeastScore = 8;
 constexpr int kBrightnessShare = 3;
 constexpr int kLeastDifference = 10;  // from its surroundings: more than noise makes
 constexpr std::int16_t kNothing = -1000;
+// Darkness counts from here down: nothing that is brighter, in grey levels, may be a black disc.
+constexpr std::int16_t kBrightestBlack = 96;
 constexpr int kCellsAtOnce = 8;
 // Neighbours, out of 8, that may have the same hue: another robot's disc, but not a line, which
 // goes on in two directions.
@@ -42,7 +44,7 @@ std::array<std::int16_t, 3> fixed_point(const Bgr& coefficients) {
 
 SparseSearch::Axis::Axis(int size_px, int step, double surroundings_px)
     : step_px(step),
-      first_px(step / 2),
+      first_px(std::min(step / 2, (size_px - 1) / 2)),
       count((size_px - first_px + step - 1) / step),
       margin(static_cast<int>(std::ceil(surroundings_px / step))) {}
 
@@ -71,7 +73,8 @@ SparseSearch::SparseSearch(int width_px, int height_px, double smallest_radius_p
       up_aslant - aside, up_aslant + aside};
   for (const ColourScore& colour : colours) {
     colours_.push_back({fixed_point(colour.along), fixed_point(colour.across),
-                        fixed_point(colour.second), !colour.second.isZero()});
+                        fixed_point(colour.second), !colour.second.isZero(),
+                        colour.along.sum() < -0.5F ? kBrightestBlack : std::int16_t{0}});
   }
 }
 
@@ -128,7 +131,7 @@ void SparseSearch::score_row(int row) {
       const std::int16_t brightest = std::max(std::max(b[i], g[i]), r[i]);
       out[i] = static_cast<std::int16_t>(dot(f.along, b[i], g[i], r[i]) -
                                          magnitude(dot(f.across, b[i], g[i], r[i])) -
-                                         (kBrightnessShare * brightest >> 4));
+                                         (kBrightnessShare * brightest >> 4) + f.offset);
       best = std::max(best, out[i]);
     }
     if (f.has_second) {  // white and black: no hue at all

@@ -62,6 +62,8 @@ class SparseSearch {
     std::array<std::int16_t, 3> across;
     std::array<std::int16_t, 3> second;
     bool has_second;
+    std::int16_t
+        offset;  ///< darkness, black's score, is negative: it needs a grey level to count from
   };
 
   void gather_row(const std::uint8_t* row_bgr);
