@@ -18,15 +18,16 @@ constexpr ShareLimits kMeasureLimits{0.30F, 0.70F};
 // error.)
 constexpr float kFindBySecondRow_px = 4.0F;
 constexpr int kMostIterations = 8;
-constexpr float kSettledPerRadius = 0.10F;  // a step of this size does not change the colours seen
+constexpr float kSettledPerRadius = 0.05F;  // a step of this size does not change the colours seen
 constexpr float kSettled_px = 0.3F;
 constexpr double kConverged_px = 0.04;
 constexpr float kLeastContrast = 10.0F;  // grey levels
 constexpr int kLeastInside = 6;          // pixels, for statistics of the disc's inside
 // Explained sum of squares over scatter that chance may bring.
 constexpr float kShadingOverScatter = 8.0F;
-constexpr double kShadingError = 0.10;  // px of error per relative change of light over a radius
-constexpr double kSmallDisc = 12.0;     // pixels: smaller ones have no inside, only an edge
+// Error in radii per relative change of light over a radius.
+constexpr double kShadingError = 0.025;
+constexpr double kSmallDisc = 22.0;  // pixels: smaller ones have no inside, only an edge
 
 // Colours of the disc and of what is around it, as seen from the window's present place.
 void read_colours(const cv::Mat& bgr, const LocalScale& scale, DiscWindow& window, Ring& ring,
@@ -61,6 +62,13 @@ double ring_deviation(const Ring& ring, const DiscWindow& w) {
   return 1.4826 * static_cast<double>(*middle);  // median absolute deviation -> sigma
 }
 
+// What the pixel grid leaves: pixels on the edge, about sqrt(N) of them, are each misjudged a
+// little.
+double grid_variance_px2(double sampling_variance_px2, double pixels) {
+  const double small = kSmallDisc / pixels;
+  return sampling_variance_px2 / std::sqrt(pixels) * (1.0 + small * small);
+}
+
 // What noise does to the centre through the pixels on the edge, and what is left of a slope of
 // light.
 double centre_variance_px2(const WeightSums& sums, const InsideShares& inside, const Ring& ring,
@@ -74,9 +82,9 @@ double centre_variance_px2(const WeightSums& sums, const InsideShares& inside, c
   const double noise = 0.5 * (around + within);
   const double by_noise = 0.5 * static_cast<double>(sums.edge_moment_px2) * gain * gain * noise /
                           (static_cast<double>(sums.weight) * static_cast<double>(sums.weight));
-  const double by_shading =
-      kShadingError *
-      static_cast<double>(window.radius_px * std::hypot(window.slope_u, window.slope_v));
+  const auto radius_px = static_cast<double>(window.radius_px);
+  const double by_shading = kShadingError * radius_px * radius_px *
+                            static_cast<double>(std::hypot(window.slope_u, window.slope_v));
   return by_noise + by_shading * by_shading;
 }
 
@@ -117,7 +125,7 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
     window.centre += step;
     if ((window.centre - start).norm() > farthest_px) return MeasureOutcome::kDriftsAway;
     if (settled && step.norm() < kConverged_px) break;
-    if (!settled && step.norm() < settled_px) {
+    if (!settled && iteration + 1 < kMostIterations && step.norm() < settled_px) {
       settled = true;
       inside = inside_shares(bgr, window);
       set_shading(inside, window);
@@ -125,11 +133,12 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
       window.row_step = 1;
     }
   }
+  if (!settled) return MeasureOutcome::kDriftsAway;
   disc.centre_px = window.centre;
   disc.pixels = static_cast<double>(sums.weight);
   disc.expected_pixels = M_PI * static_cast<double>(window.radius_px * window.radius_px);
   disc.variance_px2 = centre_variance_px2(sums, inside, ring, window) +
-                      sampling_variance_px2 / disc.pixels * (1.0 + kSmallDisc / disc.pixels);
+                      grid_variance_px2(sampling_variance_px2, disc.pixels);
   return MeasureOutcome::kMeasured;
 }
 

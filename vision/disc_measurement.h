@@ -28,17 +28,17 @@ enum class MeasureOutcome { kMeasured, kOutsideImage, kWeakContrast, kDriftsAway
 ///
 /// The variance follows from the scatter of the surroundings and of the disc's inside, carried to
 /// the centre through the pixels that are not limited (those on the edge); from the slope of the
-/// light across the disc; and from the pixel grid itself: `sampling_variance_px2` / N for N pixels
-/// seen.
+/// light across the disc; and from the pixel grid itself: `sampling_variance_px2` / sqrt(N) for N
+/// pixels seen, more for discs that are hardly larger than their edge.
 MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double radius_m,
                             const PixelPoint& start, double sampling_variance_px2,
                             DiscMeasurement& disc);
 
 /// What the pixel grid leaves of a centre's error in a frame without noise, per axis: this much
-/// / N (1 + 12 / N), measured with the synthetic camera on discs of 14 to 150 pixels, point spread
-/// 0.7 px.
-inline constexpr double kSamplingVariance_px2 = 0.0065;
+/// / sqrt(N) (1 + (22 / N)^2), measured with the synthetic camera on discs of 12 to 530 pixels,
+/// point spread 0.7 px.
+inline constexpr double kSamplingVariance_px2 = 0.0011;
 /// The same where two of three colours of every pixel are interpolated from a Bayer mosaic.
-inline constexpr double kDemosaicedSamplingVariance_px2 = 0.027;
+inline constexpr double kDemosaicedSamplingVariance_px2 = 0.0031;
 
 }  // namespace nadir::vision
