@@ -99,9 +99,9 @@ TEST(DetectorRejections, AWedgeIsNotRound) {
   EXPECT_TRUE(is_rejected(detect(bgr, bundled_layout("pair")), RejectReason::kNotRound));
 }
 
-TEST(DetectorRejections, AHueInTheDarkHasTooLittleContrast) {
-  cv::Mat bgr = flat_picture(120, 90, {6, 2, 1});
-  fill_disc(bgr, {50.0, 45.0}, 6.25, {14, 5, 1});
+TEST(DetectorRejections, APaleDiscHasTooLittleContrastInItsHue) {
+  cv::Mat bgr = flat_picture(120, 90, {25, 12, 2});
+  fill_disc(bgr, {50.0, 45.0}, 6.25, {250, 200, 150});
   EXPECT_TRUE(is_rejected(detect(bgr, bundled_layout("pair")), RejectReason::kWeakContrast));
 }
 
