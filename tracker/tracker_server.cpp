@@ -57,12 +57,14 @@ TrackerServer::TrackerServer(const TrackerConfig& config, Console& console)
 
 TrackerServer::~TrackerServer() = default;
 
-// A recording is over soon: a listener that is there already should not miss its beginning only because
-// the two processes have yet to discover each other. Without a listener nothing waits for long.
+// A recording is over soon: a listener that is there already should not miss its beginning only
+// because the two processes have yet to discover each other. Without a listener nothing waits for
+// long.
 void TrackerServer::wait_for_listener() const {
   if (!publisher_ || config_.effective_pace() != Pace::kRecorded) return;
   const auto until = std::chrono::steady_clock::now() + kDiscoveryTime;
-  while (publisher_->status().matched_pose_readers == 0 && std::chrono::steady_clock::now() < until) {
+  while (publisher_->status().matched_pose_readers == 0 &&
+         std::chrono::steady_clock::now() < until) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vision/vector_clones.h"
+
 namespace nadir::vision {
 namespace {
 
@@ -42,9 +44,7 @@ inline std::uint8_t median_of(const std::array<std::uint8_t, kRingSamples>& valu
 
 }  // namespace
 
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2", "default")))
-#endif
+NADIR_VECTOR_CLONES
 void sample_ring(const cv::Mat& bgr, const LocalScale& scale, const PixelPoint& centre,
                  float radius_px, Ring& ring) {
   const Eigen::Matrix2f axes = scale.pixels_per_metre * (radius_px / scale.scale_px_per_m);
@@ -77,9 +77,7 @@ void sample_surroundings(const cv::Mat& bgr, const LocalScale& scale, const Pixe
   sample_ring(bgr, scale, centre, disc_radius_px + kRingDistance_px, ring);
 }
 
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2", "default")))
-#endif
+NADIR_VECTOR_CLONES
 Bgr median_of_ring(const Ring& ring) {
   return {static_cast<float>(median_of(ring[0])), static_cast<float>(median_of(ring[1])),
           static_cast<float>(median_of(ring[2]))};

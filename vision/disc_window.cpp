@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "vision/vector_clones.h"
+
 namespace nadir::vision {
 namespace {
 
@@ -54,11 +56,8 @@ float sum_of(const float (&lanes)[kLanes]) {
 }  // namespace
 
 // The compiler's vectors never cross a function here: all of it stands in one body for that reason.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2,fma", "default")))
-#endif
-WeightSums
-sum_weights(const cv::Mat& bgr, const DiscWindow& w) {
+NADIR_VECTOR_CLONES
+WeightSums sum_weights(const cv::Mat& bgr, const DiscWindow& w) {
   const float outer = w.radius_px + kWindowMargin_px;
   const float inner = outer - kTaper_px;
   const float outer2 = outer * outer;

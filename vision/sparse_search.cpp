@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "vision/vector_clones.h"
+
 namespace nadir::vision {
 namespace {
 
@@ -102,9 +104,7 @@ void SparseSearch::gather_row(const std::uint8_t* row_bgr) {
   words_[last] = pixel[0] | pixel[1] << 8 | pixel[2] << 16;
 }
 
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2", "default")))
-#endif
+NADIR_VECTOR_CLONES
 void SparseSearch::score_row(int row) {
   const std::int32_t* __restrict words = words_.data();
   std::int16_t* __restrict b = blue_.data();

@@ -16,7 +16,7 @@ namespace nadir::support {
 /// One robot of the truth and the report that was matched to it.
 struct PoseError {
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();  ///< reported minus true image of the origin
-  Eigen::Vector3d pose = Eigen::Vector3d::Zero();       ///< reported minus true x, y (m), heading (rad)
+  Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< reported minus true x, y (m), heading (rad)
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< as published
   std::vector<int> pixels;                               ///< seen of each marker
 
@@ -42,7 +42,8 @@ struct AccuracyStudy {
 /// Points of the scene's marker plane, fitted by polynomial2 as nadir-calibrate would.
 calibration::Calibration calibrate_from_scene(const vision::Scene& scene, std::uint64_t seed);
 
-/// Renders `frames` frames of the scene, runs nadir-tracker's pipeline over them and compares with the truth.
+/// Renders `frames` frames of the scene, runs nadir-tracker's pipeline over them and compares with
+/// the truth.
 AccuracyStudy study_accuracy(const vision::Scene& scene, std::uint64_t seed, int frames,
                              const calibration::PixelCountVariance& variance = {});
 
