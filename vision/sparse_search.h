@@ -73,10 +73,12 @@ class SparseSearch {
   PixelPoint middle_of_neighbours(int colour, int row, int column) const;
   std::size_t cell_index(int colour, int row, int column) const {
     return static_cast<std::size_t>(colour) * plane_size_ +
-           static_cast<std::size_t>((row + v_.margin) * stride_ + column + u_.margin);
+           static_cast<std::size_t>(row + v_.margin) * static_cast<std::size_t>(stride_) +
+           static_cast<std::size_t>(column + u_.margin);
   }
   std::size_t row_index(int colour, int row) const {
-    return static_cast<std::size_t>(colour * v_.count + row);
+    return static_cast<std::size_t>(colour) * static_cast<std::size_t>(v_.count) +
+           static_cast<std::size_t>(row);
   }
 
   Axis u_;
