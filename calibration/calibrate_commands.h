@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace nadir::calibration {
+
+// The subcommands of nadir-calibrate. Each adds itself with its options to the program and runs in
+// its callback, that is in app.parse(). It throws InputError for bad input (exit 2) and any other
+// std::exception where the job failed (exit 1).
+void add_field_command(CLI::App& app);
+void add_validate_command(CLI::App& app);
+
+/// Writes a whole file; '-' is stdout. Throws InputError where the file cannot be written.
+void write_text(const std::string& file, const std::string& text);
+
+/// A number in a closed range; CLI11's own ranges let a NaN pass.
+CLI::Validator number_from_to(double low, double high);
+
+}  // namespace nadir::calibration
