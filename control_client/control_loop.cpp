@@ -1,0 +1,31 @@
+#include "control_client/control_loop.h"
+
+namespace nadir::control_client {
+
+ControlLoop::ControlLoop(const RobotModel& model, const ControlParameters& control,
+                         const NominalSettings& nominal, TrajectoryPtr trajectory)
+    : control_(control),
+      command_limit_(model.parameters().max_speed_mps, model.parameters().max_speed_mps,
+                     model.parameters().max_turn_rate_radps),
+      nominal_(model, control, nominal, std::move(trajectory)),
+      outer_(control.outer),
+      inner_(model, control.inner) {}
+
+const Eigen::Vector3d& ControlLoop::tick(const fusion::PlanarPose& estimate) {
+  if (has_started_) nominal_.advance();
+  has_started_ = true;
+  command_ = outer_.body_rate_command(nominal_.motion(), estimate, control_.tick_s, !is_saturated_)
+                 .cwiseMax(-command_limit_)
+                 .cwiseMin(command_limit_);
+  is_saturated_ = false;
+  return command_;
+}
+
+WheelVector ControlLoop::inner_step(const Eigen::Vector3d& measured_rates) {
+  const WheelVector voltages_v =
+      inner_.voltages_v(command_, measured_rates, control_.inner_step_s());
+  is_saturated_ = is_saturated_ || inner_.is_saturated();
+  return voltages_v;
+}
+
+}  // namespace nadir::control_client

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "control_client/inner_loop.h"
+#include "control_client/nominal_generator.h"
+#include "control_client/outer_loop.h"
+#include "fusion/planar_pose.h"
+
+namespace nadir::control_client {
+
+/// The whole controller of one robot: commanded trajectory -> nominal motion -> outer loop -> body
+/// rates -> inner loop -> voltages. The caller owns time, estimate and motors:
+///
+///     each tick:        rates = loop.tick(estimated pose);
+///     inner_steps each: voltages = loop.inner_step(measured body rates);
+///
+/// Robots whose firmware closes the inner loop take the body rates, or the rim speeds that
+/// RobotModel::geometry makes of them, and leave inner_step alone.
+class ControlLoop {
+ public:
+  /// `model` outlives the loop.
+  ControlLoop(const RobotModel& model, const ControlParameters& control,
+              const NominalSettings& nominal, TrajectoryPtr trajectory);
+
+  /// The outer loop at the next tick; the first call is at time 0. Returns the body rates to drive
+  /// at until the next tick, within the robot's limits (u, v in m/s, r in rad/s).
+  const Eigen::Vector3d& tick(const fusion::PlanarPose& estimate);
+
+  /// The inner loop over the next inner step, with the mean body rates of the last.
+  WheelVector inner_step(const Eigen::Vector3d& measured_rates);
+
+  const NominalMotion& nominal() const { return nominal_.motion(); }
+  const Eigen::Vector3d& command() const { return command_; }
+  double time_s() const { return nominal_.time_s(); }
+  /// Whether the motors were at their limit in the inner steps since the last tick.
+  bool is_saturated() const { return is_saturated_; }
+  double demanded_voltage_v() const { return inner_.demanded_voltage_v(); }
+
+ private:
+  ControlParameters control_;
+  Eigen::Vector3d command_limit_;
+  NominalGenerator nominal_;
+  OuterLoop outer_;
+  InnerLoop inner_;
+  Eigen::Vector3d command_ = Eigen::Vector3d::Zero();
+  bool has_started_ = false;
+  bool is_saturated_ = false;
+};
+
+}  // namespace nadir::control_client

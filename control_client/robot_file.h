@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "control_client/control_parameters.h"
+#include "control_client/robot_model.h"
+
+namespace nadir::control_client {
+
+/// A robot and how it is controlled, as data/robots/*.yaml says it.
+struct RobotConfig {
+  RobotParameters robot;
+  ControlParameters control;
+};
+
+/// Reads ROBOT.yaml strictly; every key but `wheels` has the default of omni3. Throws InputError:
+/// unknown, duplicate or missing key, value out of range, fewer than 3 or more than 4 wheels,
+/// wheels that cannot drive the body in all directions.
+RobotConfig load_robot(const std::filesystem::path& file);
+
+}  // namespace nadir::control_client
