@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <limits>
 #include <optional>
@@ -18,9 +19,9 @@ namespace nadir::fusion {
 /// How much a DelayedFusion remembers; all memory is taken at construction. A late pose is inserted
 /// where the history still holds at least (blocks - 1) * block_length intervals.
 struct HistorySize {
-  std::size_t block_length = 16;  ///< intervals from one kept filter state to the next
-  std::size_t blocks = 14;        ///< at least 2; the default is a second at 200 Hz
-  std::size_t poses = 64;
+  std::size_t block_length = 20;  ///< intervals from one kept filter state to the next
+  std::size_t blocks = 11;        ///< at least 2; the default is a second at 200 Hz
+  std::size_t poses = 50;
 };
 
 /// The whole story onboard: odometry comes at once, poses come late, in any order, several at a
@@ -111,7 +112,7 @@ class DelayedFusion {
   void push(const typename Intervals::Interval& interval);
   void forget_block();
   std::optional<PoseVerdict> refusal(const VisionPose& pose) const;
-  bool make_room(Timestamp capture);
+  PoseVerdict insert(const VisionPose& pose);
   template <class Report>
   void replay(Timestamp capture, Report report);
   template <class Report>

@@ -76,30 +76,37 @@ template <class L, OdometryErrorModel E>
 void DelayedFusion<L, E>::add_poses(std::span<const VisionPose> poses,
                                     std::span<Correction> results) {
   assert(poses.size() == results.size());
-  Timestamp earliest = Timestamp::max();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    results[i] = Correction{};
-    const auto reason = refusal(poses[i]);
-    results[i].verdict = reason.value_or(PoseVerdict::kWaitsForOdometry);
-    ++pose_counts_.at(static_cast<std::size_t>(results[i].verdict));
-    if (reason) continue;
-    if (!make_room(poses[i].capture)) {
-      --pose_counts_.at(static_cast<std::size_t>(results[i].verdict));
-      results[i].verdict = PoseVerdict::kNoRoom;
-      ++pose_counts_.at(static_cast<std::size_t>(results[i].verdict));
-      continue;
-    }
-    frames_.insert(FrameRecord(poses[i]));
-    earliest = std::min(earliest, poses[i].capture);
-  }
-  if (earliest > now()) return;
-  replay(earliest, [&](const FrameRecord& record, const Correction& correction) {
+  const auto report = [&](const FrameRecord& record, const Correction& correction) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       if (results[i].verdict == PoseVerdict::kWaitsForOdometry && record.is_frame_of(poses[i])) {
         results[i] = correction;
       }
     }
-  });
+  };
+  std::fill(results.begin(), results.end(), Correction{});
+  Timestamp earliest = Timestamp::max();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (frames_.is_full() &&
+        earliest <= now()) {  // what is inserted is used before it is forgotten
+      replay(earliest, report);
+      earliest = Timestamp::max();
+    }
+    const PoseVerdict verdict = insert(poses[i]);
+    ++pose_counts_.at(static_cast<std::size_t>(verdict));
+    results[i].verdict = verdict;
+    if (verdict == PoseVerdict::kWaitsForOdometry) earliest = std::min(earliest, poses[i].capture);
+  }
+  if (earliest <= now()) replay(earliest, report);
+}
+
+template <class L, OdometryErrorModel E>
+PoseVerdict DelayedFusion<L, E>::insert(const VisionPose& pose) {
+  if (const auto reason = refusal(pose)) return *reason;
+  while (frames_.is_full() && intervals_.has_more_than_a_block()) forget_block();
+  if (frames_.is_full()) return PoseVerdict::kNoRoom;
+  if (pose.capture <= horizon()) return PoseVerdict::kTooOld;
+  frames_.insert(FrameRecord(pose));
+  return PoseVerdict::kWaitsForOdometry;
 }
 
 template <class L, OdometryErrorModel E>
@@ -111,12 +118,6 @@ std::optional<PoseVerdict> DelayedFusion<L, E>::refusal(const VisionPose& pose) 
   if (pose.capture <= horizon()) return PoseVerdict::kTooOld;
   if (pose.capture - now() > settings_.future_tolerance) return PoseVerdict::kFromTheFuture;
   return std::nullopt;
-}
-
-template <class L, OdometryErrorModel E>
-bool DelayedFusion<L, E>::make_room(Timestamp capture) {
-  while (frames_.is_full() && intervals_.has_more_than_a_block()) forget_block();
-  return !frames_.is_full() && capture > horizon();
 }
 
 template <class L, OdometryErrorModel E>
