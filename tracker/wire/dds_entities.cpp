@@ -40,6 +40,19 @@ DdsEntity make_topic(const DdsEntity& participant, const dds_topic_descriptor_t&
           std::string("cannot create the DDS topic ") + name};
 }
 
+DdsEntity make_writer(const DdsEntity& participant, const DdsEntity& topic, const DdsQos& qos,
+                      const char* name) {
+  return {dds_create_writer(participant.handle(), topic.handle(), qos.get(), nullptr),
+          std::string("cannot write the DDS topic ") + name};
+}
+
+int matched_readers(const DdsEntity& writer) {
+  dds_publication_matched_status_t matched{};
+  return dds_get_publication_matched_status(writer.handle(), &matched) == DDS_RETCODE_OK
+             ? static_cast<int>(matched.current_count)
+             : 0;
+}
+
 int count_peers(const DdsEntity& participant) {
   const dds_entity_t reader =
       dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr);

@@ -47,6 +47,13 @@ DdsEntity make_participant(const WireOptions& options);
 DdsEntity make_topic(const DdsEntity& participant, const dds_topic_descriptor_t& type,
                      const char* name);
 
+/// Throws WireError, naming the topic, if DDS refuses.
+DdsEntity make_writer(const DdsEntity& participant, const DdsEntity& topic, const DdsQos& qos,
+                      const char* name);
+
+/// Readers that a writer has found and that fit it.
+int matched_readers(const DdsEntity& writer);
+
 /// Other participants of the domain that discovery knows of; -1 if DDS does not say.
 int count_peers(const DdsEntity& participant);
 

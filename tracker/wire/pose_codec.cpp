@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <string>
+
+#include "tracker/wire/codec_parts.h"
 
 namespace nadir::tracker {
 namespace {
@@ -13,21 +13,10 @@ static_assert(sizeof(nadir_wire_FrameRobot::team) == kMaxTeamLength + 1);
 static_assert(sizeof(nadir_wire_RobotPose::camera) == kMaxCameraLength + 1);
 static_assert(sizeof(nadir_wire_FrameSummary::camera) == kMaxCameraLength + 1);
 
-template <std::size_t N>
-bool encode_text(const std::string& text, char (&field)[N]) {
-  if (text.size() >= N || text.find('\0') != std::string::npos) return false;
-  std::memcpy(field, text.c_str(), text.size() + 1);
-  return true;
-}
-
 bool is_sound(const nadir_wire_Estimate& estimate) {
-  const double* covariance = estimate.covariance;
-  const bool finite =
-      std::isfinite(estimate.x_m) && std::isfinite(estimate.y_m) && std::isfinite(estimate.u_px) &&
-      std::isfinite(estimate.v_px) &&
-      std::all_of(covariance, covariance + 9, [](double v) { return std::isfinite(v); });
-  return finite && fusion::wrap_angle(estimate.heading_rad) == estimate.heading_rad &&
-         covariance[0] >= 0.0 && covariance[4] >= 0.0 && covariance[8] >= 0.0 &&
+  const double pose[3] = {estimate.x_m, estimate.y_m, estimate.heading_rad};
+  return is_sound_pose(pose) && is_sound_covariance(estimate.covariance) &&
+         std::isfinite(estimate.u_px) && std::isfinite(estimate.v_px) &&
          estimate.confidence >= 0.0 && estimate.confidence <= 1.0 &&
          estimate.pixels._length <= kMaxWireMarkers;
 }
@@ -37,11 +26,7 @@ bool encode_estimate(const WireRobot& robot, nadir_wire_Estimate* estimate) {
   estimate->x_m = robot.pose_world_robot.x_m;
   estimate->y_m = robot.pose_world_robot.y_m;
   estimate->heading_rad = robot.pose_world_robot.heading_rad;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      estimate->covariance[3 * row + column] = robot.covariance(row, column);
-    }
-  }
+  encode_covariance(robot.covariance, estimate->covariance);
   estimate->u_px = robot.u_px;
   estimate->v_px = robot.v_px;
   estimate->confidence = robot.confidence;
@@ -56,11 +41,7 @@ bool encode_estimate(const WireRobot& robot, nadir_wire_Estimate* estimate) {
 bool decode_estimate(const nadir_wire_Estimate& estimate, WireRobot* robot) {
   if (!is_sound(estimate)) return false;
   robot->pose_world_robot = {estimate.x_m, estimate.y_m, estimate.heading_rad};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      robot->covariance(row, column) = estimate.covariance[3 * row + column];
-    }
-  }
+  decode_covariance(estimate.covariance, &robot->covariance);
   robot->u_px = estimate.u_px;
   robot->v_px = estimate.v_px;
   robot->confidence = estimate.confidence;

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "tracker/wire/participant.h"
+#include "tracker/wire/stream_status.h"
 #include "tracker/wire/wire_options.h"
 #include "tracker/wire/wire_types.h"
 
@@ -26,17 +28,6 @@ struct ReaderOptions {
   std::size_t queue_capacity = 256;  ///< a full queue drops its oldest entry
 };
 
-struct ReaderStatus {
-  int matched_writers = 0;             ///< discovered and compatible
-  int alive_writers = 0;               ///< of these, heard of within kLivelinessLease
-  int peers = 0;                       ///< other DDS participants in the domain, of whatever kind
-  std::uint64_t received = 0;          ///< passed the filter
-  std::uint64_t dropped = 0;           ///< of these, pushed out of a full queue
-  std::uint64_t malformed = 0;         ///< refused by the codec
-  std::uint64_t writers_lost = 0;      ///< times a writer fell silent without a good-bye
-  std::uint64_t deadlines_missed = 0;  ///< times a robot was not seen for kPoseDeadline
-};
-
 /// Receives poses, either through a queue (poll) or through a callback.
 class PoseReader {
  public:
@@ -49,6 +40,11 @@ class PoseReader {
   /// over, because while it works nothing is received. Poses do not go through the queue. Throws
   /// WireError if DDS refuses.
   PoseReader(const ReaderOptions& options, Callback on_pose);
+
+  /// The same two on a participant that the process has already; the place is the participant's,
+  /// not that of the options.
+  PoseReader(const Participant& participant, const ReaderOptions& options);
+  PoseReader(const Participant& participant, const ReaderOptions& options, Callback on_pose);
 
   PoseReader(PoseReader&&) noexcept;
   PoseReader& operator=(PoseReader&&) noexcept;
@@ -69,6 +65,7 @@ class PoseReader {
 class FrameReader {
  public:
   explicit FrameReader(const ReaderOptions& options);
+  FrameReader(const Participant& participant, const ReaderOptions& options);
   FrameReader(FrameReader&&) noexcept;
   FrameReader& operator=(FrameReader&&) noexcept;
   ~FrameReader();

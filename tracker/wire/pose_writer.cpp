@@ -1,9 +1,8 @@
 #include "tracker/wire/pose_writer.h"
 
-#include <string>
-
 #include "tracker/wire/dds_entities.h"
 #include "tracker/wire/instance_ledger.h"
+#include "tracker/wire/participant_state.h"
 #include "tracker/wire/pose_codec.h"
 #include "tracker/wire/topics.h"
 #include "tracker/wire/wire_qos.h"
@@ -15,12 +14,6 @@ template <typename Clock>
 std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
       .count();
-}
-
-DdsEntity make_writer(const DdsEntity& participant, const DdsEntity& topic, const DdsQos& qos,
-                      const char* name) {
-  return {dds_create_writer(participant.handle(), topic.handle(), qos.get(), nullptr),
-          std::string("cannot write the DDS topic ") + name};
 }
 
 /// Cyclone DDS takes this switch over from the process when a writer is made: on for this one only.
@@ -44,26 +37,20 @@ DdsEntity make_batching_writer(const DdsEntity& participant, const DdsEntity& to
 /// takes 292 bytes with its headers.
 constexpr std::size_t kPosesInDatagram = 4;
 
-int matched_readers(const DdsEntity& writer) {
-  dds_publication_matched_status_t matched{};
-  return dds_get_publication_matched_status(writer.handle(), &matched) == DDS_RETCODE_OK
-             ? static_cast<int>(matched.current_count)
-             : 0;
-}
-
 }  // namespace
 
 struct PoseWriter::State {
-  explicit State(const WireOptions& options)
-      : participant(make_participant(options)),
-        pose_topic(make_topic(participant, nadir_wire_RobotPose_desc, kRobotPoseTopic)),
-        frame_topic(make_topic(participant, nadir_wire_FrameSummary_desc, kFrameTopic)),
+  explicit State(const Participant& place)
+      : participant(place),
+        pose_topic(make_topic(entity(), nadir_wire_RobotPose_desc, kRobotPoseTopic)),
+        frame_topic(make_topic(entity(), nadir_wire_FrameSummary_desc, kFrameTopic)),
         pose_writer(
-            make_batching_writer(participant, pose_topic, pose_qos(options), kRobotPoseTopic)),
-        frame_writer(make_writer(participant, frame_topic, frame_qos(options), kFrameTopic)) {
+            make_batching_writer(entity(), pose_topic, pose_qos(place.options()), kRobotPoseTopic)),
+        frame_writer(make_writer(entity(), frame_topic, frame_qos(place.options()), kFrameTopic)) {
     frame_robots.reserve(kMaxRobotsInFrame);
   }
 
+  const DdsEntity& entity() const { return participant.state().entity; }
   void count(dds_return_t written, std::uint64_t* published) {
     ++(written == DDS_RETCODE_OK ? *published : counters.failed);
   }
@@ -75,7 +62,7 @@ struct PoseWriter::State {
   /// Notes who was published, and takes off the network who was not for too long.
   void keep_ledger(std::span<const WirePose> poses, std::int64_t steady_ns);
 
-  DdsEntity participant;
+  Participant participant;
   DdsEntity pose_topic;
   DdsEntity frame_topic;
   DdsEntity pose_writer;
@@ -103,7 +90,9 @@ void PoseWriter::State::keep_ledger(std::span<const WirePose> poses, std::int64_
   if (retired) flush();
 }
 
-PoseWriter::PoseWriter(const WireOptions& options) : state_(std::make_unique<State>(options)) {}
+PoseWriter::PoseWriter(const WireOptions& options) : PoseWriter(Participant(options)) {}
+PoseWriter::PoseWriter(const Participant& participant)
+    : state_(std::make_unique<State>(participant)) {}
 PoseWriter::PoseWriter(PoseWriter&&) noexcept = default;
 PoseWriter& PoseWriter::operator=(PoseWriter&&) noexcept = default;
 PoseWriter::~PoseWriter() = default;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "tracker/wire/participant.h"
 #include "tracker/wire/wire_options.h"
 #include "tracker/wire/wire_types.h"
 
@@ -29,6 +30,7 @@ class PoseWriter {
 
   /// Throws WireError if DDS refuses.
   explicit PoseWriter(const WireOptions& options);
+  explicit PoseWriter(const Participant& participant);
   PoseWriter(PoseWriter&&) noexcept;
   PoseWriter& operator=(PoseWriter&&) noexcept;
   ~PoseWriter();

@@ -8,8 +8,9 @@
 
 #include "tracker/wire/bounded_queue.h"
 #include "tracker/wire/dds_entities.h"
-#include "tracker/wire/pose_codec.h"
-#include "tracker/wire/pose_reader.h"
+#include "tracker/wire/participant.h"
+#include "tracker/wire/participant_state.h"
+#include "tracker/wire/stream_status.h"
 
 namespace nadir::tracker {
 
@@ -20,27 +21,27 @@ struct StreamPlace {
   DdsQos qos;
 };
 
-/// What the readers of both streams share: from Cyclone's receive thread into the queue or the
-/// callback.
+/// What the readers of all streams share: from Cyclone's receive thread into the queue or the
+/// callback. `decode(const Sample&, Value*)` must be declared where this is used.
 template <typename Sample, typename Value>
 class StreamReader {
  public:
   using Wanted = std::function<bool(const Sample&)>;
   using Callback = std::function<void(const Value&)>;
 
-  StreamReader(const ReaderOptions& options, const StreamPlace& place, Wanted wanted,
-               Callback callback)
+  StreamReader(const Participant& participant, std::size_t queue_capacity, const StreamPlace& place,
+               Wanted wanted, Callback callback)
       : wanted_(std::move(wanted)),
         callback_(std::move(callback)),
-        queue_(options.queue_capacity),
-        participant_(make_participant(options.wire)),
-        topic_(make_topic(participant_, place.type, place.topic)) {
+        queue_(queue_capacity),
+        participant_(participant),
+        topic_(make_topic(participant.state().entity, place.type, place.topic)) {
     const DdsListener listener(dds_create_listener(this));
     dds_lset_data_available(listener.get(), &StreamReader::on_data);
     dds_lset_liveliness_changed(listener.get(), &StreamReader::on_liveliness);
-    reader_ = DdsEntity(
-        dds_create_reader(participant_.handle(), topic_.handle(), place.qos.get(), listener.get()),
-        std::string("cannot read the DDS topic ") + place.topic);
+    reader_ = DdsEntity(dds_create_reader(participant.state().entity.handle(), topic_.handle(),
+                                          place.qos.get(), listener.get()),
+                        std::string("cannot read the DDS topic ") + place.topic);
   }
   StreamReader(const StreamReader&) = delete;  // DDS holds its address
   StreamReader& operator=(const StreamReader&) = delete;
@@ -70,7 +71,7 @@ class StreamReader {
   std::atomic<std::uint64_t> writers_lost_{0};
   BoundedQueue<Value> queue_;
   // Last, so that they go first: afterwards no listener runs any more.
-  DdsEntity participant_;
+  Participant participant_;
   DdsEntity topic_;
   DdsEntity reader_;
 };
@@ -125,7 +126,7 @@ ReaderStatus StreamReader<Sample, Value>::status() const {
   if (dds_get_requested_deadline_missed_status(reader_.handle(), &deadline) == DDS_RETCODE_OK) {
     status.deadlines_missed = deadline.total_count;
   }
-  status.peers = count_peers(participant_);
+  status.peers = participant_.peers();
   status.received = received_;
   status.dropped = queue_.dropped();
   status.malformed = malformed_;
