@@ -66,7 +66,7 @@ std::vector<VisionRow> vision_of(const MrclamFeed& feed, const MrclamProtocol& p
     pose.y_m += protocol.sigma_position_m * noise_y;
     pose.heading_rad = wrap_angle(pose.heading_rad + protocol.sigma_heading_rad * noise_heading);
     vision.push_back({t_s + protocol.undeclared_delay_s, t_s + protocol.delay_s, pose,
-                      var_position_m2, var_position_m2, var_heading_rad2});
+                      var_position_m2, var_position_m2, var_heading_rad2, 0});
   }
   return vision;
 }
@@ -86,7 +86,7 @@ MrclamFeed load_mrclam(int robot, const MrclamProtocol& protocol) {
   for (const auto& row : rates) {
     const double t_s = row[0] - start_s;
     if (!feed.odometry.empty() && t_s <= feed.odometry.back().t_s) continue;
-    feed.odometry.push_back({t_s, row[1], 0.0, row[2]});
+    feed.odometry.push_back({t_s, {row[1], 0.0, row[2]}, 0});
   }
   feed.truth = read_truth(mrclam_folder() / (name + "_Groundtruth.dat"), start_s);
   feed.vision = vision_of(feed, protocol);
@@ -112,7 +112,8 @@ void write_feed(const MrclamFeed& feed, const std::filesystem::path& folder) {
   odometry.precision(9);
   odometry << "t_s,u_mps,v_mps,r_radps\n";
   for (const OdometryRow& row : feed.odometry) {
-    odometry << row.t_s << ',' << row.u_mps << ',' << row.v_mps << ',' << row.r_radps << '\n';
+    odometry << row.t_s << ',' << row.rates.u_mps << ',' << row.rates.v_mps << ','
+             << row.rates.r_radps << '\n';
   }
   std::ofstream vision(folder / "vision.csv");
   vision.precision(12);
