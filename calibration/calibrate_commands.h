@@ -10,6 +10,7 @@ namespace nadir::calibration {
 // std::exception where the job failed (exit 1).
 void add_field_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
+void add_noise_command(CLI::App& app);
 
 /// Writes a whole file; '-' is stdout. Throws InputError where the file cannot be written.
 void write_text(const std::string& file, const std::string& text);

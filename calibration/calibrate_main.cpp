@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   app.footer("Example: nadir-calibrate field points.csv --height 0.12 -o cal.yaml");
   nadir::calibration::add_field_command(app);
   nadir::calibration::add_validate_command(app);
+  nadir::calibration::add_noise_command(app);
   try {
     return parse_and_run(app, argc, argv);
   } catch (const nadir::vision::InputError& error) {
