@@ -34,7 +34,7 @@ class Run {
     const double duration_s =
         scenario_.duration_s > 0.0 ? scenario_.duration_s : scenario_.trajectory->duration_s();
     const int last = static_cast<int>(std::floor(duration_s / tick_s_ + 1e-9));
-    for (int tick = 1; tick <= last && !record_.has_diverged; ++tick) advance(tick);
+    for (int tick = 1; tick <= last; ++tick) advance(tick);
     for (const Estimator* estimator : estimators_) {
       record_.decisions.push_back(estimator->decisions());
     }
@@ -57,7 +57,8 @@ class Run {
     now.nominal = loop_.nominal();
     now.truth = plant_.pose();
     const Eigen::Vector3d deviation = now.truth - now.nominal.pose;
-    record_.has_diverged = deviation.head<2>().norm() > scenario_.diverged_m ||
+    record_.has_diverged = record_.has_diverged ||
+                           deviation.head<2>().norm() > scenario_.diverged_m ||
                            std::abs(deviation.z()) > scenario_.diverged_rad;
     record_.ticks.push_back(now);
   }

@@ -24,7 +24,7 @@ struct Scenario {
   VisionParameters vision;
   Faults faults;
   std::uint64_t run_seed = 1000;
-  /// The run ends where the robot is farther from the nominal motion.
+  /// The run counts as diverged if the robot was ever farther from the nominal motion.
   double diverged_m = 0.5;
   double diverged_rad = 1.5707963267948966;
 };

@@ -40,8 +40,11 @@ double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& 
 }
 
 double path_rms_m(const RunRecord& record, std::size_t first) {
+  // Every fourth tick is enough: neighbours are much the same.
+  constexpr std::size_t kStride = 4;
   double sum = 0.0;
-  for (std::size_t i = first; i < record.ticks.size(); ++i) {
+  int count = 0;
+  for (std::size_t i = first; i < record.ticks.size(); i += kStride, ++count) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t j = 1; j < record.ticks.size(); ++j) {
       nearest = std::min(nearest, distance_to_segment(record.ticks[i].truth.head<2>(),
@@ -50,8 +53,7 @@ double path_rms_m(const RunRecord& record, std::size_t first) {
     }
     sum += nearest * nearest;
   }
-  const auto count = static_cast<double>(record.ticks.size() - first);
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
 Eigen::Vector3d pose_vector(const fusion::PlanarPose& pose) {
@@ -125,6 +127,24 @@ void add(EstimateMetrics& sum, const EstimateMetrics& run) {
   sum.inliers_rejected += run.inliers_rejected;
 }
 
+// How a step is answered; of all ticks.
+void measure_step(const RunRecord& record, RunMetrics& metrics) {
+  constexpr double kSettled_m = 0.02;
+  constexpr double kSettled_rad = 2.0 * 3.14159265358979323846 / 180.0;
+  for (const TickRecord& tick : record.ticks) {
+    const Eigen::Vector3d off = tick.truth - tick.command;
+    if (off.head<2>().norm() > kSettled_m || std::abs(off.z()) > kSettled_rad) {
+      metrics.settled_s = tick.time_s;
+    }
+    metrics.overshoot_x_m =
+        std::max(metrics.overshoot_x_m, tick.truth.x() - record.ticks.back().command.x());
+    metrics.to_nominal_max_m =
+        std::max(metrics.to_nominal_max_m, (tick.truth - tick.nominal.pose).head<2>().norm());
+    metrics.saturated += tick.is_saturated ? 1.0 / static_cast<double>(record.ticks.size()) : 0.0;
+    metrics.peak_demand_v = std::max(metrics.peak_demand_v, tick.demanded_voltage_v);
+  }
+}
+
 }  // namespace
 
 RunMetrics measure(const RunRecord& record, double from_s) {
@@ -143,10 +163,7 @@ RunMetrics measure(const RunRecord& record, double from_s) {
   metrics.to_nominal = nominal.result();
   metrics.to_command = command.result();
   metrics.path_rms_m = path_rms_m(record, first);
-  for (const TickRecord& tick : record.ticks) {
-    metrics.saturated += tick.is_saturated ? 1.0 / static_cast<double>(record.ticks.size()) : 0.0;
-    metrics.peak_demand_v = std::max(metrics.peak_demand_v, tick.demanded_voltage_v);
-  }
+  measure_step(record, metrics);
   for (std::size_t i = 0; i < record.estimates.size(); ++i) {
     metrics.estimates.push_back(measure_estimate(record, i, first));
   }
@@ -167,6 +184,9 @@ Summary summarize(const std::vector<RunMetrics>& runs) {
     mean.path_rms_m += run.path_rms_m * run.path_rms_m;
     mean.saturated += run.saturated / count;
     mean.peak_demand_v = std::max(mean.peak_demand_v, run.peak_demand_v);
+    mean.overshoot_x_m = std::max(mean.overshoot_x_m, run.overshoot_x_m);
+    mean.settled_s = std::max(mean.settled_s, run.settled_s);
+    mean.to_nominal_max_m = std::max(mean.to_nominal_max_m, run.to_nominal_max_m);
     for (std::size_t i = 0; i < mean.estimates.size(); ++i)
       add(mean.estimates[i], run.estimates[i]);
   }

@@ -28,10 +28,13 @@ struct EstimateMetrics {
 
 /// Errors of one run.
 struct RunMetrics {
-  PoseErrors to_nominal;    ///< truth minus nominal motion
-  PoseErrors to_command;    ///< truth minus commanded trajectory
-  double path_rms_m = 0.0;  ///< distance to the commanded path, whenever it was due
-  double saturated = 0.0;   ///< share of the ticks
+  PoseErrors to_nominal;          ///< truth minus nominal motion
+  PoseErrors to_command;          ///< truth minus commanded trajectory
+  double path_rms_m = 0.0;        ///< distance to the commanded path, whenever it was due
+  double to_nominal_max_m = 0.0;  ///< from the first tick on
+  double overshoot_x_m = 0.0;     ///< largest x beyond the command's last one; of use for steps
+  double settled_s = 0.0;         ///< last time farther than 2 cm or 2 deg from the command
+  double saturated = 0.0;         ///< share of the ticks
   double peak_demand_v = 0.0;
   bool has_diverged = false;
   std::vector<EstimateMetrics> estimates;  ///< in the order of the estimators
@@ -43,8 +46,8 @@ inline constexpr double kOutlier_m = 0.020;
 /// Measures what is later than `from_s`.
 RunMetrics measure(const RunRecord& record, double from_s = 1.0);
 
-/// Over runs: root mean square of the root mean squares, largest of the largest, means of the
-/// others, sums of the counts.
+/// Over runs: root mean square of the root mean squares, largest of the largest, latest of the
+/// settling, means of the others, sums of the counts.
 struct Summary {
   std::size_t runs = 0;
   int diverged = 0;
