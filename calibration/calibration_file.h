@@ -1,16 +1,19 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "calibration/camera_place.h"
 #include "calibration/field_points.h"
 #include "calibration/fit.h"
 #include "calibration/plane_map.h"
 
 namespace nadir::calibration {
 
-/// The version of calibration files that this nadir writes and reads.
-inline constexpr int kCalibrationVersion = 1;
+/// The version of calibration files that this nadir writes. It reads version 1 too, which knew
+/// polynomial2 alone, no hull of the points and no place of the camera.
+inline constexpr int kCalibrationVersion = 2;
 
 /// A plane map with what is known of how it was made. In a file: YAML, all numbers with full
 /// precision.
@@ -22,6 +25,7 @@ struct Calibration {
   PixelBox points_box{};  ///< of the points that were fitted
   ResidualStatistics residuals{};
   StatedNoise noise{};
+  std::optional<CameraPlace> camera{};  ///< absent: not known
 };
 
 /// The file's text.

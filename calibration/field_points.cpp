@@ -1,5 +1,7 @@
 #include "calibration/field_points.h"
 
+#include <utility>
+
 #include "vision/input/csv_table.h"
 
 namespace nadir::calibration {
@@ -27,6 +29,13 @@ PixelBox pixel_box(const FieldPoints& points) {
     box.high_px = box.high_px.cwiseMax(point.pixel);
   }
   return box;
+}
+
+ConvexHull pixel_hull(const FieldPoints& points) {
+  std::vector<vision::PixelPoint> pixels;
+  pixels.reserve(points.points.size());
+  for (const FieldPoint& point : points.points) pixels.push_back(point.pixel);
+  return ConvexHull::of(std::move(pixels));
 }
 
 }  // namespace nadir::calibration

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/convex_hull.h"
 #include "calibration/pixel_box.h"
 #include "vision/pixel.h"
 
@@ -30,5 +31,8 @@ FieldPoints load_field_points(const std::filesystem::path& file);
 
 /// The smallest box that holds the points, of which there is at least one.
 PixelBox pixel_box(const FieldPoints& points);
+
+/// The smallest convex polygon in the image that holds the points.
+ConvexHull pixel_hull(const FieldPoints& points);
 
 }  // namespace nadir::calibration

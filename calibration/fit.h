@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "calibration/field_points.h"
+#include "calibration/map_fit.h"
 #include "calibration/plane_map.h"
 #include "calibration/residuals.h"
 
@@ -16,7 +17,9 @@ struct StatedNoise {
   std::optional<double> survey_m;  ///< of measuring a point on the field
 
   bool is_stated() const { return pixel_px.has_value() || survey_m.has_value(); }
-  /// Variance of x and y that a point with this Jacobian (m/px) has from both, m^2.
+  /// Covariance of the place of a point with this Jacobian (m/px) from both, m^2.
+  Eigen::Matrix2d covariance_m2(const Eigen::Matrix2d& jacobian_m_per_px) const;
+  /// Its diagonal.
   Eigen::Vector2d variance_m2(const Eigen::Matrix2d& jacobian_m_per_px) const;
 };
 
@@ -29,16 +32,18 @@ struct FieldFit {
   double explained_rms_m = 0.0;
 };
 
-/// Least squares fit of a second-order polynomial (theory 4.4) on normalised pixel coordinates, by
-/// column-pivoting QR, all points with equal weight.
+/// Plain least squares fit (fit_map), and what its residuals say of its error.
 ///
 /// What is left is split into noise and the map's local lack of fit by estimate_residual_field. The
-/// noise is the stated one; without a statement it is estimated, and counts as lack of fit as well.
-/// Exactly six points leave nothing: their noise is the stated one, or else that of one pixel.
+/// noise is the stated one, place by place where it is one of pixels; without a statement it is
+/// estimated, and counts as lack of fit as well. So few points that nothing is left have the stated
+/// noise, or else that of one pixel.
 ///
-/// Throws InputError: fewer than 6 points, a number that is not finite, one pixel with two
-/// different places, points that do not determine the polynomial (on one line or one conic), places
-/// from which no sound map follows (on one line, rows mixed up).
+/// Throws InputError as fit_map does.
+FieldFit fit_field(ModelKind model, const FieldPoints& points, const StatedNoise& noise,
+                   const FitOptions& options = {});
+
+/// fit_field with a second-order polynomial (theory 4.4).
 FieldFit fit_polynomial2(const FieldPoints& points, const StatedNoise& noise);
 
 }  // namespace nadir::calibration

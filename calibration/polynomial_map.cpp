@@ -1,12 +1,15 @@
 #include "calibration/polynomial_map.h"
 
-#include <algorithm>
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
 namespace nadir::calibration {
 namespace {
+
+constexpr double kInverseTolerance_m = 1e-9;
+constexpr int kMaxNewtonSteps = 50;
 
 /// 1, t, t^2, ... up to t^order.
 std::array<double, kMaxPolynomialOrder + 1> powers(double t, int order) {
@@ -86,15 +89,34 @@ double PolynomialMap::sampling_variance_m2(const vision::PixelPoint& pixel) cons
   return parameters_.noise_variance_m2 * leverage(pixel);
 }
 
-Eigen::Matrix2d PolynomialMap::calibration_covariance_m2(const vision::PixelPoint& pixel) const {
-  const LackOfFit& lack = parameters_.lack_of_fit;
-  Eigen::Vector2d variance_m2 = lack.mean_square_m2(pixel);
-  const double here = leverage(pixel);
-  if (lack.nodes().size() > 1 && !lack.box().holds(pixel)) {
-    variance_m2 *= std::max(1.0, here / leverage(lack.box().nearest(pixel)));
+Eigen::MatrixX2d PolynomialMap::axis_basis(const vision::PixelPoint& pixel) const {
+  return polynomial_basis(normalised(pixel), parameters_.order).replicate<1, 2>();
+}
+
+std::optional<vision::PixelPoint> PolynomialMap::pixel_from_plane(
+    const Eigen::Vector2d& plane_m) const {
+  // The first step from the centre is the linear guess: pixel += J^-1 (wanted - map(pixel)).
+  vision::PixelPoint pixel = centre_px();
+  const double orientation = jacobian_m_per_px(pixel).determinant();
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
+    const Eigen::Vector2d error_m = plane_m - plane_from_pixel(pixel);
+    const Eigen::Matrix2d jacobian = jacobian_m_per_px(pixel);
+    const double determinant = jacobian.determinant();
+    if (determinant == 0.0 || !error_m.allFinite()) return std::nullopt;
+    if (error_m.norm() <= kInverseTolerance_m) {
+      if (determinant * orientation <= 0.0) return std::nullopt;
+      return pixel;
+    }
+    pixel += jacobian.inverse() * error_m;
   }
-  variance_m2.array() += parameters_.noise_variance_m2 * here;
-  return variance_m2.asDiagonal();
+  return std::nullopt;
+}
+
+ModelKind PolynomialMap::kind() const {
+  for (const ModelKind model : kAllModels) {
+    if (polynomial_order(model) == parameters_.order) return model;
+  }
+  throw std::logic_error("a polynomial of this order has no name");
 }
 
 }  // namespace nadir::calibration

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
-#include "calibration/lack_of_fit.h"
+#include "calibration/model_kind.h"
 #include "vision/pixel.h"
 
 namespace nadir::calibration {
@@ -33,14 +34,10 @@ PolynomialBasis polynomial_basis(const Eigen::Vector2d& normalised, int order);
 ///     p   = coefficients_m phi(n)
 ///     J   = coefficients_m dphi/dn / scale_px
 ///     M   = sum of phi phi^T over the fitted points
-///     C   = noise_variance phi^T M^-1 phi I + diag(mean square lack of fit)
+///     C   = noise_variance phi^T M^-1 phi I        the sampling error of the coefficients
 ///
-/// The first part of C is the sampling error of the coefficients. The second is the model's own
-/// error: what is left of a residual that the noise does not explain is systematic, and so it is an
-/// error of the places near by. Theory 4.4 has s_res^2 in the first part, which counts the model's
-/// error there as if it were noise, everywhere and equally in both axes; here each stands where it
-/// belongs. Outside of the lack of fit's box its border's value grows with the leverage
-/// phi^T M^-1 phi.
+/// Where the noise of the points is known place by place, M^-1 (sum of w phi phi^T) M^-1 stands for
+/// M^-1, with w the noise variance of a point against the mean one.
 class PolynomialMap {
  public:
   struct Parameters {
@@ -50,7 +47,6 @@ class PolynomialMap {
     PolynomialCoefficients coefficients_m;      ///< 2 x polynomial_terms(order)
     PolynomialInformation information_inverse;  ///< M^-1, terms x terms, no unit
     double noise_variance_m2 = 0.0;             ///< of the points, per axis
-    LackOfFit lack_of_fit;
   };
 
   /// Throws std::invalid_argument where sizes do not belong to the order, or a number is out of
@@ -60,22 +56,31 @@ class PolynomialMap {
   Eigen::Vector2d plane_from_pixel(const vision::PixelPoint& pixel) const;
   /// d(x_m, y_m)/d(u_px, v_px), in closed form.
   Eigen::Matrix2d jacobian_m_per_px(const vision::PixelPoint& pixel) const;
-  /// The sampling error alone: noise_variance phi^T M^-1 phi, m^2 per axis.
+  /// phi^T M^-1 phi.
+  double leverage(const vision::PixelPoint& pixel) const;
+  /// leverage times the identity: the sampling covariance for a noise variance of 1.
+  Eigen::Matrix2d unit_covariance(const vision::PixelPoint& pixel) const {
+    return leverage(pixel) * Eigen::Matrix2d::Identity();
+  }
+  /// noise_variance phi^T M^-1 phi, m^2 per axis.
   double sampling_variance_m2(const vision::PixelPoint& pixel) const;
-  /// C, diagonal.
-  Eigen::Matrix2d calibration_covariance_m2(const vision::PixelPoint& pixel) const;
+  /// Derivatives of x (first column) and y by those parameters on which each depends: phi twice.
+  Eigen::MatrixX2d axis_basis(const vision::PixelPoint& pixel) const;
+  /// The pixel that shows a place of the plane, by Newton's method from the linear guess, to
+  /// 1e-9 m; nothing where it does not converge, or only beyond a fold of the map (where the image
+  /// would be mirrored).
+  std::optional<vision::PixelPoint> pixel_from_plane(const Eigen::Vector2d& plane_m) const;
   /// Where a search for a pixel starts.
   vision::PixelPoint centre_px() const { return parameters_.centre_px; }
 
+  /// Of order 2 to 5.
+  ModelKind kind() const;
   const Parameters& parameters() const { return parameters_; }
 
  private:
   Eigen::Vector2d normalised(const vision::PixelPoint& pixel) const {
     return (pixel - parameters_.centre_px) / parameters_.scale_px;
   }
-
-  /// phi^T M^-1 phi.
-  double leverage(const vision::PixelPoint& pixel) const;
 
   Parameters parameters_;
 };

@@ -1,22 +1,19 @@
 #include "calibration/residual_field.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "calibration/residual_places.h"
+
 namespace nadir::calibration {
 namespace {
 
 constexpr int kColumns = 13;
 constexpr int kRows = 10;
-/// Eigenvalues of as many points take a fraction of a second; of more points an even selection is
-/// taken.
-constexpr Eigen::Index kMostPoints = 200;
 /// Lengths tried: from the points' spacing to far beyond the image, where a field is nearly one
 /// more term of the polynomial.
 constexpr double kShortestOfSpacing = 0.7;
@@ -39,7 +36,7 @@ struct FieldModel {
   Eigen::MatrixXd covariance;   ///< of the field at the points, n x n
   Eigen::MatrixXd directions;   ///< (n - terms) x n: rows from the points to the contrasts
   Eigen::VectorXd eigenvalues;  ///< of the contrasts' covariance, mean 1
-  Eigen::MatrixX2d contrasts;
+  Eigen::VectorXd contrasts;
 };
 
 struct Hypothesis {
@@ -49,45 +46,15 @@ struct Hypothesis {
   double weight = 0.0;  ///< first the logarithm of its likelihood
 };
 
-using Hypotheses = std::array<std::vector<Hypothesis>, 2>;  // per axis
-
 /// Matern 5/2 with variance 1.
 double correlation(double distance_px, double length_px) {
   const double t = std::sqrt(5.0) * distance_px / length_px;
   return (1.0 + t + t * t / 3.0) * std::exp(-t);
 }
 
-FitResiduals thinned(const FitResiduals& fit) {
-  const Eigen::Index count = fit.error_m.rows();
-  if (count <= kMostPoints) return fit;
-  FitResiduals few{fit.box, {}, Eigen::MatrixX2d(kMostPoints, 2), fit.basis};
-  for (Eigen::Index i = 0; i < kMostPoints; ++i) {
-    const Eigen::Index from = i * count / kMostPoints;
-    few.pixels.push_back(fit.pixels[static_cast<std::size_t>(from)]);
-    few.error_m.row(i) = fit.error_m.row(from);
-  }
-  return few;
-}
-
-/// Phi: a row of basis functions a point.
-Eigen::MatrixXd design_matrix(const FitResiduals& fit) {
-  Eigen::MatrixXd design(fit.error_m.rows(), fit.basis(fit.pixels.front()).size());
-  for (Eigen::Index i = 0; i < design.rows(); ++i) {
-    design.row(i) = fit.basis(fit.pixels[static_cast<std::size_t>(i)]);
-  }
-  return design;
-}
-
-/// A: orthonormal columns, A^T design = 0.
-Eigen::MatrixXd contrast_basis(const Eigen::MatrixXd& design) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(design);
-  const Eigen::MatrixXd q = qr.householderQ();
-  return q.rightCols(design.rows() - design.cols());
-}
-
-std::vector<double> lengths_px(const FitResiduals& fit) {
-  const Eigen::Vector2d extent_px = fit.box.high_px - fit.box.low_px;
-  const double spacing_px = std::sqrt(extent_px.prod() / static_cast<double>(fit.pixels.size()));
+std::vector<double> lengths_px(const PixelBox& box, std::size_t places) {
+  const Eigen::Vector2d extent_px = box.high_px - box.low_px;
+  const double spacing_px = std::sqrt(extent_px.prod() / static_cast<double>(places));
   const double longest_px = kLongestOfExtent * extent_px.maxCoeff();
   std::vector<double> lengths;
   for (double length = kShortestOfSpacing * spacing_px; length < longest_px; length *= kLengthStep)
@@ -95,8 +62,9 @@ std::vector<double> lengths_px(const FitResiduals& fit) {
   return lengths;
 }
 
-FieldModel field_model(const FitResiduals& fit, const Eigen::MatrixXd& contrasts,
-                       double length_px) {
+/// Of contrasts A (a column each) of one axis's errors.
+FieldModel field_model(const Places& places, const Eigen::VectorXd& error_m,
+                       const Eigen::MatrixXd& contrasts, double length_px) {
   const Eigen::Index count = contrasts.rows();
   FieldModel model;
   model.length_px = length_px;
@@ -104,7 +72,7 @@ FieldModel field_model(const FitResiduals& fit, const Eigen::MatrixXd& contrasts
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j <= i; ++j) {
       const double distance_px =
-          (fit.pixels[static_cast<std::size_t>(i)] - fit.pixels[static_cast<std::size_t>(j)])
+          (places.pixels[static_cast<std::size_t>(i)] - places.pixels[static_cast<std::size_t>(j)])
               .norm();
       model.covariance(i, j) = model.covariance(j, i) = correlation(distance_px, length_px);
     }
@@ -115,16 +83,16 @@ FieldModel field_model(const FitResiduals& fit, const Eigen::MatrixXd& contrasts
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(model.norm * reduced);
   model.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
   model.directions = solver.eigenvectors().transpose() * contrasts.transpose();
-  model.contrasts = model.directions * fit.error_m;
+  model.contrasts = model.directions * error_m;
   return model;
 }
 
-/// Of one axis's contrasts, up to a constant (restricted likelihood: the polynomial is left out).
-double log_likelihood(const FieldModel& model, int axis, double field_m2, double noise_m2) {
+/// Of the contrasts, up to a constant (restricted likelihood: the parameters are left out).
+double log_likelihood(const FieldModel& model, double field_m2, double noise_m2) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < model.eigenvalues.size(); ++i) {
     const double variance_m2 = field_m2 * model.eigenvalues[i] + noise_m2;
-    const double z_m = model.contrasts(i, axis);
+    const double z_m = model.contrasts[i];
     sum -= 0.5 * (std::log(variance_m2) + z_m * z_m / variance_m2);
   }
   return sum;
@@ -143,13 +111,13 @@ void normalise(std::vector<Hypothesis>* hypotheses) {
   for (Hypothesis& one : *hypotheses) one.weight /= sum;
 }
 
-/// Those of one axis. `residual_m2` is the residuals' variance, above 0.
-std::vector<Hypothesis> weigh(const std::vector<FieldModel>& models, int axis, double residual_m2,
-                              const std::optional<Eigen::Vector2d>& stated_m2) {
+/// `residual_m2` is the contrasts' mean square, above 0.
+std::vector<Hypothesis> weigh(const std::vector<FieldModel>& models, double residual_m2,
+                              const std::optional<double>& stated_m2) {
   std::vector<double> noises_m2;
   const double least_m2 = std::ldexp(residual_m2, 2 * kWeakestNoise);
   if (stated_m2) {
-    noises_m2.push_back(std::max((*stated_m2)[axis], least_m2));
+    noises_m2.push_back(std::max(*stated_m2, least_m2));
   } else {
     for (int k = kWeakestNoise; k <= 0; ++k) noises_m2.push_back(std::ldexp(residual_m2, 2 * k));
   }
@@ -160,7 +128,7 @@ std::vector<Hypothesis> weigh(const std::vector<FieldModel>& models, int axis, d
       for (int k = kWeakestField; k <= kStrongestField; ++k) {
         const double field_m2 = std::ldexp(unit_m2, 2 * k);
         hypotheses.push_back(
-            {model, field_m2, noise_m2, log_likelihood(models[model], axis, field_m2, noise_m2)});
+            {model, field_m2, noise_m2, log_likelihood(models[model], field_m2, noise_m2)});
       }
     }
   }
@@ -168,58 +136,58 @@ std::vector<Hypothesis> weigh(const std::vector<FieldModel>& models, int axis, d
   return hypotheses;
 }
 
-/// Residuals, what may explain them, and with which weight.
-class ResidualField {
+/// Mean and mean square of a place's error about the refitted map.
+struct Moments {
+  double first_m = 0.0;
+  double second_m2 = 0.0;
+};
+
+/// One axis's residuals, what may explain them, and with which weight.
+class AxisField {
  public:
-  ResidualField(const FitResiduals& all, const std::optional<Eigen::Vector2d>& stated_m2)
-      : fit_(thinned(all)), design_(design_matrix(fit_)) {
-    const Eigen::MatrixXd contrasts = contrast_basis(design_);
-    const Eigen::MatrixX2d z_m = contrasts.transpose() * fit_.error_m;
-    for (const double length : lengths_px(fit_)) {
-      models_.push_back(field_model(fit_, contrasts, length));
+  AxisField(const Places& places, const PixelBox& box, int axis,
+            const std::optional<double>& stated_m2)
+      : pixels_(places.pixels),
+        noise_share_(places.noise_share),
+        inverse_(pseudo_inverse(places.design[static_cast<std::size_t>(axis)])) {
+    const Eigen::VectorXd error_m = places.error_m.col(axis);
+    const Eigen::MatrixXd contrasts = contrast_basis(places.design[static_cast<std::size_t>(axis)]);
+    for (const double length : lengths_px(box, pixels_.size())) {
+      models_.push_back(field_model(places, error_m, contrasts, length));
     }
-    for (int axis = 0; axis < 2; ++axis) {
-      // Points without any error leave a variance of 0, whose logarithm nobody wants.
-      const double residual_m2 = std::max(z_m.col(axis).squaredNorm() / z_m.rows(), kLeast_m2);
-      hypotheses_[axis] = weigh(models_, axis, residual_m2, stated_m2);
-    }
-    normal_.compute(design_.transpose() * design_);
-    shift_m_ = normal_.solve(design_.transpose() * fit_.error_m);
+    // Points without any error leave a variance of 0, whose logarithm nobody wants.
+    const double residual_m2 = std::max(
+        (contrasts.transpose() * error_m).squaredNorm() / static_cast<double>(contrasts.cols()),
+        kLeast_m2);
+    std::optional<double> stated_here_m2;
+    if (stated_m2) stated_here_m2 = *stated_m2 * noise_share_;
+    hypotheses_ = weigh(models_, residual_m2, stated_here_m2);
+    shift_m_ = inverse_ * error_m;
   }
 
-  /// Averaged over the hypotheses, per axis.
-  Eigen::Vector2d noise_variance_m2() const {
-    Eigen::Vector2d noise_m2 = Eigen::Vector2d::Zero();
-    for (int axis = 0; axis < 2; ++axis) {
-      for (const Hypothesis& one : hypotheses_[axis]) noise_m2[axis] += one.weight * one.noise_m2;
-    }
-    return noise_m2;
+  /// Of a point, averaged over the hypotheses.
+  double noise_variance_m2() const {
+    double noise_m2 = 0.0;
+    for (const Hypothesis& one : hypotheses_) noise_m2 += one.weight * one.noise_m2;
+    return noise_m2 / noise_share_;
   }
 
-  /// E[d | z] and the variance of its part from the field, averaged over the hypotheses.
-  LackOfFitNode at(const vision::PixelPoint& pixel) const {
-    const Eigen::VectorXd phi = fit_.basis(pixel);
-    const Eigen::VectorXd a = design_ * normal_.solve(phi);
+  /// E[d | z] and the variance of its part from the field, averaged over the hypotheses. `phi` is
+  /// the axis's basis at the pixel.
+  std::pair<double, double> at(const vision::PixelPoint& pixel, const Eigen::VectorXd& phi) const {
+    const Eigen::VectorXd a = inverse_.transpose() * phi;
     Moments moments;
     for (std::size_t index = 0; index < models_.size(); ++index) {
       if (is_used(index)) add_moments(index, pixel, a, &moments);
     }
-    return {moments.first_m + shift_m_.transpose() * phi,
-            (moments.second_m2 - moments.first_m.cwiseAbs2()).cwiseMax(0.0)};
+    const double variance_m2 = std::max(0.0, moments.second_m2 - moments.first_m * moments.first_m);
+    return {moments.first_m + shift_m_.dot(phi), variance_m2};
   }
 
  private:
-  struct Moments {
-    Eigen::Vector2d first_m = Eigen::Vector2d::Zero();
-    Eigen::Vector2d second_m2 = Eigen::Vector2d::Zero();
-  };
-
   bool is_used(std::size_t model) const {
-    const auto holds = [model](const std::vector<Hypothesis>& hypotheses) {
-      return std::any_of(hypotheses.begin(), hypotheses.end(),
-                         [model](const Hypothesis& one) { return one.model == model; });
-    };
-    return holds(hypotheses_[0]) || holds(hypotheses_[1]);
+    return std::any_of(hypotheses_.begin(), hypotheses_.end(),
+                       [model](const Hypothesis& one) { return one.model == model; });
   }
 
   void add_moments(std::size_t index, const vision::PixelPoint& pixel, const Eigen::VectorXd& a,
@@ -227,32 +195,63 @@ class ResidualField {
     const FieldModel& model = models_[index];
     Eigen::VectorXd k(a.size());
     for (Eigen::Index i = 0; i < k.size(); ++i) {
-      const double distance_px = (fit_.pixels[static_cast<std::size_t>(i)] - pixel).norm();
+      const double distance_px = (pixels_[static_cast<std::size_t>(i)] - pixel).norm();
       k[i] = model.norm * correlation(distance_px, model.length_px);
     }
     const Eigen::VectorXd spread = model.covariance * a;
     const Eigen::VectorXd shared = model.directions * (k - spread);  // of d and z
     const double prior = model.norm - 2.0 * a.dot(k) + a.dot(spread);
-    for (int axis = 0; axis < 2; ++axis) {
-      for (const Hypothesis& one : hypotheses_[axis]) {
-        if (one.model != index) continue;
-        const Eigen::VectorXd gain = one.field_m2 * shared.array() /
-                                     (one.field_m2 * model.eigenvalues.array() + one.noise_m2);
-        const double mean_m = gain.dot(model.contrasts.col(axis));
-        const double variance_m2 = one.field_m2 * std::max(0.0, prior - gain.dot(shared));
-        moments->first_m[axis] += one.weight * mean_m;
-        moments->second_m2[axis] += one.weight * (mean_m * mean_m + variance_m2);
-      }
+    for (const Hypothesis& one : hypotheses_) {
+      if (one.model != index) continue;
+      const Eigen::VectorXd gain =
+          one.field_m2 * shared.array() / (one.field_m2 * model.eigenvalues.array() + one.noise_m2);
+      const double mean_m = gain.dot(model.contrasts);
+      const double variance_m2 = one.field_m2 * std::max(0.0, prior - gain.dot(shared));
+      moments->first_m += one.weight * mean_m;
+      moments->second_m2 += one.weight * (mean_m * mean_m + variance_m2);
     }
   }
 
-  FitResiduals fit_;
-  Eigen::MatrixXd design_;
+  std::vector<vision::PixelPoint> pixels_;
+  double noise_share_;
+  Eigen::MatrixXd inverse_;  ///< from errors to what they move the parameters
   std::vector<FieldModel> models_;
-  Hypotheses hypotheses_;
-  Eigen::LDLT<Eigen::MatrixXd> normal_;
-  /// What the fit would move without the points that were left out; else zero.
-  Eigen::MatrixX2d shift_m_;
+  std::vector<Hypothesis> hypotheses_;
+  /// What the fit would move if each axis had its own parameters and neighbourhoods were points;
+  /// else zero.
+  Eigen::VectorXd shift_m_;
+};
+
+std::optional<double> of_axis(const std::optional<Eigen::Vector2d>& both, int axis) {
+  return both ? std::optional<double>((*both)[axis]) : std::nullopt;
+}
+
+/// Both axes.
+class ResidualField {
+ public:
+  ResidualField(const FitResiduals& fit, const std::optional<Eigen::Vector2d>& stated_m2)
+      : ResidualField(fit, places_of(fit), stated_m2) {}
+
+  Eigen::Vector2d noise_variance_m2() const {
+    return {axes_[0].noise_variance_m2(), axes_[1].noise_variance_m2()};
+  }
+
+  LackOfFitNode at(const vision::PixelPoint& pixel) const {
+    const Eigen::MatrixX2d phi = basis_(pixel);
+    const auto [x_m, x_m2] = axes_[0].at(pixel, phi.col(0));
+    const auto [y_m, y_m2] = axes_[1].at(pixel, phi.col(1));
+    return {{x_m, y_m}, {x_m2, y_m2}};
+  }
+
+ private:
+  ResidualField(const FitResiduals& fit, const Places& places,
+                const std::optional<Eigen::Vector2d>& stated_m2)
+      : basis_(fit.basis),
+        axes_{AxisField(places, fit.box, 0, of_axis(stated_m2, 0)),
+              AxisField(places, fit.box, 1, of_axis(stated_m2, 1))} {}
+
+  std::function<Eigen::MatrixX2d(const vision::PixelPoint&)> basis_;
+  std::array<AxisField, 2> axes_;
 };
 
 vision::PixelPoint grid_pixel(const PixelBox& box, double column, double row) {

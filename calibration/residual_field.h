@@ -16,8 +16,8 @@ struct FitResiduals {
   PixelBox box{};                          ///< of the points, with extent on both sides
   std::vector<vision::PixelPoint> pixels;  ///< n of them
   Eigen::MatrixX2d error_m;                ///< n x 2, surveyed minus mapped place
-  /// phi of the fit at a pixel. The points determine the fit: M = sum of phi phi^T has full rank.
-  std::function<Eigen::VectorXd(const vision::PixelPoint&)> basis;
+  /// phi of the fit at a pixel, a column an axis: the derivatives of x, of y by the parameters.
+  std::function<Eigen::MatrixX2d(const vision::PixelPoint&)> basis;
 };
 
 struct ResidualEstimate {
@@ -27,10 +27,10 @@ struct ResidualEstimate {
 
 /// Splits residuals into a smooth field, which is the model's own error, and noise.
 ///
-/// The points' error per axis about a polynomial of the fit's order is taken as g + noise with a
-/// Gaussian process g (Matern 5/2; Rasmussen and Williams, Gaussian Processes for Machine Learning,
+/// The points' error per axis about a map of the fit's model is taken as g + noise with a Gaussian
+/// process g (Matern 5/2; Rasmussen and Williams, Gaussian Processes for Machine Learning,
 /// 2006, sections 2.7 and 4.2). Contrasts z = A^T error with A^T Phi = 0 (Phi: a row
-/// phi^T a point) are free of the polynomial. At a pixel the fit is off by
+/// phi^T a point) are free of the parameters. At a pixel the fit is off by
 ///
 ///     d = g(pixel) - a^T (g_points + noise),   a = Phi M^-1 phi(pixel)
 ///
@@ -39,6 +39,10 @@ struct ResidualEstimate {
 /// therefore grows with the distance from the points and goes to zero where the noise explains all.
 /// Length, strength of g and, where it is not stated, the noise are not chosen but averaged over
 /// with their restricted likelihoods.
+///
+/// A model whose axes share parameters is taken as if each axis had its own: what the shared fit
+/// leaves of the residuals is moved back exactly, only the knowledge that both agree is not used.
+/// Of many points an even selection is taken.
 ///
 /// `stated_variance_m2`: the points' noise per axis. Without it the noise that is found counts as
 /// error of the model in every place, which is the careful choice. At least one contrast is needed

@@ -26,19 +26,28 @@ DistanceStatistics statistics(std::vector<double> distances) {
 
 }  // namespace
 
-std::vector<PointResidual> point_residuals(const PlaneMap& map, const FieldPoints& points) {
+std::vector<PointResidual> residuals_of(const std::vector<Eigen::Vector2d>& errors_m,
+                                        const PlaneMap& map, const FieldPoints& points) {
   std::vector<PointResidual> residuals;
-  residuals.reserve(points.points.size());
-  for (const FieldPoint& point : points.points) {
-    const Eigen::Vector2d error_m = point.position_m - map.plane_from_pixel(point.pixel);
-    const Eigen::Matrix2d jacobian = map.jacobian_m_per_px(point.pixel);
+  residuals.reserve(errors_m.size());
+  for (std::size_t i = 0; i < errors_m.size(); ++i) {
+    const Eigen::Matrix2d jacobian = map.jacobian_m_per_px(points.points[i].pixel);
     // On a fold of the map no pixel is near.
     const double distance_px = jacobian.determinant() == 0.0
                                    ? std::numeric_limits<double>::infinity()
-                                   : (jacobian.inverse() * error_m).norm();
-    residuals.push_back({error_m, error_m.norm(), distance_px});
+                                   : (jacobian.inverse() * errors_m[i]).norm();
+    residuals.push_back({errors_m[i], errors_m[i].norm(), distance_px});
   }
   return residuals;
+}
+
+std::vector<PointResidual> point_residuals(const PlaneMap& map, const FieldPoints& points) {
+  std::vector<Eigen::Vector2d> errors_m;
+  errors_m.reserve(points.points.size());
+  for (const FieldPoint& point : points.points) {
+    errors_m.emplace_back(point.position_m - map.plane_from_pixel(point.pixel));
+  }
+  return residuals_of(errors_m, map, points);
 }
 
 ResidualStatistics residual_statistics(const std::vector<PointResidual>& residuals) {

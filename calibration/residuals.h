@@ -27,6 +27,11 @@ struct ResidualStatistics {
 
 std::vector<PointResidual> point_residuals(const PlaneMap& map, const FieldPoints& points);
 
+/// The same of errors that were found otherwise, surveyed minus mapped place; `map` tells the
+/// scale.
+std::vector<PointResidual> residuals_of(const std::vector<Eigen::Vector2d>& errors_m,
+                                        const PlaneMap& map, const FieldPoints& points);
+
 /// Of at least one residual.
 ResidualStatistics residual_statistics(const std::vector<PointResidual>& residuals);
 

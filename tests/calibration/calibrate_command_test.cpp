@@ -87,7 +87,7 @@ TEST_F(CalibrateCommand, FieldWritesToStdoutAndJsonToAFile) {
   const std::string json_file = folder_.path() / "fit.json";
   const Outcome outcome = field({"--height", "0", "-o", "-", "--json", json_file});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, StartsWith("nadir_calibration: 1\n"));
+  EXPECT_THAT(outcome.out, StartsWith("nadir_calibration: 2\n"));
   std::ifstream stream(json_file);
   const auto json = nlohmann::json::parse(stream);
   const Calibration calibration = load_calibration(folder_.write("out.yaml", outcome.out));
@@ -149,10 +149,10 @@ TEST_F(CalibrateCommand, RefusesBadInputWithOneLine) {
   expect_refusal(field({"--height", "0.1", "-o", folder_.path() / "no/folder/cal.yaml"}),
                  "cannot be written");
   const std::string old = folder_.write("old.yaml", "nadir_calibration: 0\n");
-  expect_refusal(
-      run({"validate", old, points_}),
-      "old.yaml:1:1: calibration of version 0; this nadir reads version 1; run nadir-calibrate "
-      "again");
+  expect_refusal(run({"validate", old, points_}),
+                 "old.yaml:1:1: calibration of version 0; this nadir reads versions 1 to 2; run "
+                 "nadir-calibrate "
+                 "again");
 }
 
 TEST_F(CalibrateCommand, ExplainsItself) {

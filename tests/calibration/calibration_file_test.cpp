@@ -50,15 +50,18 @@ TEST_F(CalibrationFile, KeepsEveryBit) {
   EXPECT_EQ(after.coefficients_m, before.coefficients_m);
   EXPECT_EQ(after.information_inverse, before.information_inverse);
   EXPECT_EQ(after.noise_variance_m2, before.noise_variance_m2);
-  EXPECT_EQ(after.lack_of_fit.box().low_px, before.lack_of_fit.box().low_px);
-  EXPECT_EQ(after.lack_of_fit.box().high_px, before.lack_of_fit.box().high_px);
-  EXPECT_EQ(after.lack_of_fit.columns(), before.lack_of_fit.columns());
-  EXPECT_EQ(after.lack_of_fit.rows(), before.lack_of_fit.rows());
-  ASSERT_EQ(after.lack_of_fit.nodes().size(), before.lack_of_fit.nodes().size());
-  for (std::size_t i = 0; i < before.lack_of_fit.nodes().size(); ++i) {
-    EXPECT_EQ(after.lack_of_fit.nodes()[i].error_m, before.lack_of_fit.nodes()[i].error_m);
-    EXPECT_EQ(after.lack_of_fit.nodes()[i].variance_m2, before.lack_of_fit.nodes()[i].variance_m2);
+  const LackOfFit& lack_before = written.map.support().lack_of_fit;
+  const LackOfFit& lack_after = read.map.support().lack_of_fit;
+  EXPECT_EQ(lack_after.box().low_px, lack_before.box().low_px);
+  EXPECT_EQ(lack_after.box().high_px, lack_before.box().high_px);
+  EXPECT_EQ(lack_after.columns(), lack_before.columns());
+  EXPECT_EQ(lack_after.rows(), lack_before.rows());
+  ASSERT_EQ(lack_after.nodes().size(), lack_before.nodes().size());
+  for (std::size_t i = 0; i < lack_before.nodes().size(); ++i) {
+    EXPECT_EQ(lack_after.nodes()[i].error_m, lack_before.nodes()[i].error_m);
+    EXPECT_EQ(lack_after.nodes()[i].variance_m2, lack_before.nodes()[i].variance_m2);
   }
+  EXPECT_EQ(read.map.support().hull.vertices(), written.map.support().hull.vertices());
   EXPECT_EQ(read.height_m, 0.12);
   EXPECT_EQ(read.image_width_px, 1282);
   EXPECT_EQ(read.image_height_px, 962);
@@ -72,12 +75,12 @@ TEST_F(CalibrationFile, KeepsEveryBit) {
 }
 
 TEST_F(CalibrationFile, StartsWithItsVersion) {
-  EXPECT_EQ(calibration_yaml(example()).rfind("nadir_calibration: 1\n", 0), 0U);
+  EXPECT_EQ(calibration_yaml(example()).rfind("nadir_calibration: 2\n", 0), 0U);
 }
 
 TEST_F(CalibrationFile, RefusesAnotherVersion) {
-  EXPECT_EQ(line_with("nadir_calibration: 1", "nadir_calibration: 2"),
-            "cal.yaml:1:1: calibration of version 2; this nadir reads version 1; run "
+  EXPECT_EQ(line_with("nadir_calibration: 2", "nadir_calibration: 3"),
+            "cal.yaml:1:1: calibration of version 3; this nadir reads versions 1 to 2; run "
             "nadir-calibrate again");
 }
 
@@ -85,7 +88,8 @@ TEST_F(CalibrationFile, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(line_with("height_m:", "hight_m:"), HasSubstr("height_m"));
   EXPECT_THAT(line_with("  scale_px:", "  zoom: 1\n  scale_px:"), HasSubstr("zoom"));
   EXPECT_THAT(line_with("height_m: 0.12", "height_m: 0.12\nheight_m: 0.13"), HasSubstr("height_m"));
-  EXPECT_THAT(line_with("polynomial2", "homography"), HasSubstr("homography"));
+  EXPECT_THAT(line_with("polynomial2", "homography"), HasSubstr("pinhole"));
+  EXPECT_THAT(line_with("polynomial2", "polynomial7"), HasSubstr("polynomial7"));
   EXPECT_THAT(line_with("height_m: 0.12", "height_m: -1"), HasSubstr("cal.yaml:3:11"));
   EXPECT_THAT(line_with("image_height_px: 962\n", ""), HasSubstr("image_height_px"));
 }

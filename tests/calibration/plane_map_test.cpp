@@ -68,8 +68,7 @@ TEST(PlaneMap, MapsTheCovarianceOfAPixel) {
   parameters.centre_px = {100.0, 50.0};
   parameters.scale_px = 10.0;
   parameters.noise_variance_m2 = 0.5;
-  parameters.lack_of_fit = LackOfFit::uniform(0.25);
-  const PlaneMap map{PolynomialMap(parameters)};
+  const PlaneMap map(PolynomialMap(parameters), {LackOfFit::uniform(0.25), {}});
   Eigen::Matrix2d covariance_px2;
   covariance_px2 << 4.0, 1.0, 1.0, 9.0;
   const PlanePoint point =

@@ -114,7 +114,7 @@ TEST(PolynomialFit, PredictsItsSamplingErrorInMonteCarlo) {
 }
 
 /// The true error of the map on places between the points against what it publishes of itself; with
-/// 425 points, of which the field is estimated from 200, too.
+/// 425 points, which the field sees in 128 neighbourhoods, too.
 TEST(PolynomialFit, CountsUnexplainedResidualAsLackOfFitNearBy) {
   std::mt19937_64 random(3);
   for (const int columns : {9, 25}) {
@@ -122,7 +122,7 @@ TEST(PolynomialFit, CountsUnexplainedResidualAsLackOfFitNearBy) {
     const FieldPoints points = with_noise(exact, 0.1, 0.0, random);
     const FieldFit fit = fit_polynomial2(points, {.pixel_px = 0.1, .survey_m = {}});
     EXPECT_GT(fit.residuals.rms_m, 10.0 * fit.explained_rms_m);
-    const LackOfFit& lack = polynomial(fit).parameters().lack_of_fit;
+    const LackOfFit& lack = fit.map.support().lack_of_fit;
     double error_m2 = 0.0;
     double lack_m2 = 0.0;
     double difference_m2 = 0.0;
@@ -152,10 +152,10 @@ TEST(PolynomialFit, NoLackOfFitWhereTheNoiseExplainsAll) {
   const auto& careful = polynomial(unstated).parameters();
   EXPECT_NEAR(careful.noise_variance_m2 / parameters.noise_variance_m2, 1.0, 0.15);
   for (const PixelPoint& pixel : places_in_the_image()) {
-    EXPECT_LT(parameters.lack_of_fit.mean_square_m2(pixel).maxCoeff(),
+    EXPECT_LT(fit.map.support().lack_of_fit.mean_square_m2(pixel).maxCoeff(),
               0.12 * parameters.noise_variance_m2);
     // What nobody explained may be an error of the map as well.
-    EXPECT_GE(careful.lack_of_fit.mean_square_m2(pixel).minCoeff(),
+    EXPECT_GE(unstated.map.support().lack_of_fit.mean_square_m2(pixel).minCoeff(),
               careful.noise_variance_m2 * 0.8);
   }
 }
@@ -164,9 +164,8 @@ TEST(PolynomialFit, RefusesTooFewPoints) {
   FieldPoints points = grid_points(3, 3, quadratic_truth);
   points.points.resize(5);
   EXPECT_EQ(input_error_line([&] { fit_polynomial2(points, {}); }),
-            "points.csv: holds 5 points, too few for polynomial2; give at least 6, better 20, "
-            "spread to the "
-            "corners of the field");
+            "points.csv: holds 5 points, too few for polynomial2; give at least 12, better 20 or "
+            "more, spread to the corners of the field");
 }
 
 TEST(PolynomialFit, RefusesPointsOnOneLineOrConic) {

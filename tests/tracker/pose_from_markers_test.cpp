@@ -29,8 +29,8 @@ calibration::PlaneMap curved_map(bool mirrored, double noise_variance_m2 = 0.0,
       -0.2, 0.03, sign * 1.62, 0.01, 0.02, 0.025;
   parameters.information_inverse = Eigen::MatrixXd::Identity(6, 6) / 24.0;
   parameters.noise_variance_m2 = noise_variance_m2;
-  parameters.lack_of_fit = calibration::LackOfFit::uniform(lack_of_fit_m2);
-  return calibration::PlaneMap(calibration::PolynomialMap(parameters));
+  return calibration::PlaneMap(calibration::PolynomialMap(parameters),
+                               {calibration::LackOfFit::uniform(lack_of_fit_m2), {}});
 }
 
 vision::MarkerLayout league_layout() {
