@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "vision/input/number_text.h"
@@ -12,6 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kMsPerS = 1000.0;
 constexpr double kMmPerM = 1000.0;
 constexpr double kDegPerRad = 57.295779513082320877;
 
@@ -75,6 +78,15 @@ std::string refusal_lines(const FuseRun& run, const std::string& vision_file) {
   return text;
 }
 
+/// Where vision and odometry disagree about time by more than chance and a hundredth of a second.
+std::string lag_line(const std::optional<LagReading>& lag) {
+  if (!lag || std::abs(lag->lag_s) < std::max(0.01, 3.0 * lag->sigma_s)) return "";
+  return fmt::format(
+      "vision sees the motion {:+.0f} ms (sigma {:.0f} ms) after odometry tells it: add that to "
+      "lead_s of odometry if it is commands, else to undeclared_delay_s of vision\n",
+      lag->lag_s * kMsPerS, lag->sigma_s * kMsPerS);
+}
+
 std::uint64_t unused_odometry(const FusionHealth& health) {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < kOdometryVerdicts; ++i) {
@@ -118,6 +130,8 @@ std::string summary_json(const FuseRun& run, const std::optional<FuseScore>& sco
   json["position_max_m"] = is_scored ? Json(score->position_max_m) : Json();
   json["rows"] = run.estimates.size();
   json["rows_with_truth"] = score ? score->compared : 0;
+  json["lag_s"] = run.lag ? Json(run.lag->lag_s) : Json();
+  json["lag_sigma_s"] = run.lag ? Json(run.lag->sigma_s) : Json();
   json["not_arrived"] = run.not_arrived;
   json["revised"] = run.health.revised;
   json["poses"] = counts_json(kPoseKeys, run.health.poses);
@@ -142,6 +156,7 @@ std::string summary_text(const FuseRun& run, const std::optional<FuseScore>& sco
                       mean_nis(run.decisions), counts.rejected, counts.recovered);
   if (run.not_arrived > 0) text += fmt::format("; {} arrive after the odometry", run.not_arrived);
   text += "\n" + refusal_lines(run, vision_file);
+  text += lag_line(run.lag);
   if (const auto unused = unused_odometry(run.health); unused > 0) {
     text += fmt::format("{} odometry rows could not be used; --json tells why\n", unused);
   }

@@ -121,6 +121,7 @@ class LogPlayer {
       run.estimates.push_back({t_s, known_at(t_s)});
     }
     run.health = fusion_.health();
+    run.lag = lag_.reading();
     run.not_arrived = logs_.vision.size() - next_vision_;
     return run;
   }
@@ -149,7 +150,9 @@ class LogPlayer {
     if constexpr (std::is_same_v<typename Fusion::Nominal, AlongNominal::Nominal>) {
       odometry.nominal = nominal_.at(valid, to_seconds(to - from), fusion_.estimate());
     }
-    fusion_.add_odometry(odometry);
+    if (is_used(fusion_.add_odometry(odometry))) {
+      lag_.add_odometry(odometry.from, odometry.to, odometry.mean_rates);
+    }
   }
 
   void hear_vision(double t_s, std::vector<VisionDecision>* decisions) {
@@ -167,6 +170,7 @@ class LogPlayer {
     fusion_.add_poses(poses_, corrections_);
     for (std::size_t i = 0; i < corrections_.size(); ++i) {
       decisions->push_back({corrections_[i], logs_.vision[first + i].line});
+      if (is_used(corrections_[i].verdict)) lag_.add_pose(poses_[i].capture, poses_[i].pose);
     }
   }
 
@@ -181,6 +185,7 @@ class LogPlayer {
   Fusion fusion_;
   NominalMotion nominal_;
   FrameNumbers frame_numbers_;
+  MotionLag lag_;
   std::size_t next_vision_ = 0;
   std::vector<VisionPose> poses_;
   std::vector<Correction> corrections_;

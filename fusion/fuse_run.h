@@ -7,6 +7,7 @@
 #include "fusion/fuse_config.h"
 #include "fusion/fuse_logs.h"
 #include "fusion/fusion_health.h"
+#include "fusion/motion_lag.h"
 #include "fusion/pose_filter.h"
 
 namespace nadir::fusion {
@@ -41,7 +42,10 @@ struct FuseRun {
   std::vector<EstimateRow> estimates;     ///< one an odometry row
   std::vector<VisionDecision> decisions;  ///< one a vision row that arrived in time
   FusionHealth health;                    ///< at the end; verdicts as they stand then
-  std::size_t not_arrived = 0;            ///< vision rows that arrive after the last odometry row
+  /// By how much vision still sees the motion later than odometry tells it, beyond the lead and the
+  /// delay of the configuration.
+  std::optional<LagReading> lag;
+  std::size_t not_arrived = 0;  ///< vision rows that arrive after the last odometry row
 };
 
 /// Plays the logs to the DelayedFusion that runs on a robot, in the order in which a robot hears
