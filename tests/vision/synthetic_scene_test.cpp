@@ -104,6 +104,37 @@ TEST_F(SceneFile, WrongInputIsNamedWithItsPlace) {
   expect_complaint("frames: 3\nframes: 4\n", "2:1", "frames");
 }
 
+TEST_F(SceneFile, LiveRobotsAndDeliveryAreRead) {
+  const Scene scene = load(
+      "live_robots: {layouts: [league.yaml], hold_ms: 250}\n"
+      "delivery: {delay_ms: [60, 100], loss: 0.1, blackouts: [{start_s: 20, length_s: 1}]}\n");
+  ASSERT_TRUE(scene.live_robots.has_value());
+  EXPECT_EQ(scene.live_robots->layouts, std::vector<std::size_t>{0});
+  EXPECT_DOUBLE_EQ(scene.live_robots->hold_s, 0.25);
+  EXPECT_EQ(scene.layouts.at(0).name, "league");
+  EXPECT_DOUBLE_EQ(scene.delivery.shortest_delay_s, 0.06);
+  EXPECT_DOUBLE_EQ(scene.delivery.longest_delay_s, 0.1);
+  EXPECT_DOUBLE_EQ(scene.delivery.loss, 0.1);
+  ASSERT_EQ(scene.delivery.blackouts.size(), 1U);
+  EXPECT_DOUBLE_EQ(scene.delivery.blackouts[0].start_s, 20.0);
+  EXPECT_DOUBLE_EQ(scene.delivery.blackouts[0].length_s, 1.0);
+  // The points for a calibration are at the height of the live robots' marks.
+  EXPECT_EQ(scene.points.height_m, 0.15);
+}
+
+TEST_F(SceneFile, WrongLiveRobotsAndDeliveryAreNamedWithTheirPlace) {
+  const std::string live = "live_robots: {layouts: [league.yaml]}\n";
+  expect_complaint("live_robots: {layouts: []}\n", "1:", "the list is empty");
+  expect_complaint("live_robots: {layouts: [nowhere.yaml]}\n", "1:", "nowhere.yaml");
+  expect_complaint("live_robots: {layouts: [league.yaml], hold: 3}\n", "1:", "hold_ms");
+  expect_complaint("delivery: {loss: 0.1}\n", "1:", "live_robots");
+  expect_complaint(live + "delivery: {loss: 1}\n", "2:", "out of range");
+  expect_complaint(live + "delivery: {delay_ms: [100, 60]}\n", "2:", "no range");
+  expect_complaint(live + "delivery: {delay_ms: [1, 2, 3]}\n", "2:", "no range");
+  expect_complaint(live + "delivery: {delay: [1, 2]}\n", "2:", "delay_ms");
+  expect_complaint(live + "delivery: {blackouts: [{start_s: 1}]}\n", "2:", "length_s");
+}
+
 TEST_F(SceneFile, MissingFileIsAnError) {
   EXPECT_THROW(load_scene(folder_ / "absent.yaml"), InputError);
 }

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "vision/input/input_error.h"
 #include "vision/sources/image_folder.h"
@@ -67,7 +68,12 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const Source
   if (parts.scheme == "synthetic") {
     const SyntheticPace pace =
         options.synthetic_in_real_time ? SyntheticPace::kRealTime : SyntheticPace::kFastest;
-    return std::make_unique<SyntheticSource>(load_scene(parts.rest), options.seed, pace);
+    Scene scene = load_scene(parts.rest);
+    if (scene.live_robots && options.live_robots) {
+      auto robots = options.live_robots(scene.live_robots->hold_s);
+      return std::make_unique<SyntheticSource>(std::move(scene), options.seed, std::move(robots));
+    }
+    return std::make_unique<SyntheticSource>(std::move(scene), options.seed, pace);
   }
   throw InputError({source}, "unknown source scheme '" + parts.scheme + "'", kPossibleSources);
 }

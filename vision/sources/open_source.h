@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "vision/frame_source.h"
+#include "vision/synthetic/live_robots.h"
 
 namespace nadir::vision {
 
@@ -18,6 +20,9 @@ struct SourceOptions {
   /// A synthetic scene behaves like a camera: its rate, wall-clock times, late readers lose frames.
   /// Otherwise it is a recording: as fast as it is read, with the scene's own times.
   bool synthetic_in_real_time = false;
+  /// Who knows the live robots of a synthetic scene; called only for a scene that has some, which
+  /// then is a camera. hold_s: a robot not heard of for longer is gone.
+  std::function<std::shared_ptr<LiveRobots>(double hold_s)> live_robots;
 };
 
 /// Opens what a user names: a folder of images, a video file, `v4l2:/dev/video0` or

@@ -107,6 +107,27 @@ struct RandomRobots {
   bool redraw_every_frame = true;
 };
 
+/// Robots that somebody else moves while the scene is shown (live_robots.h). Such a scene is a
+/// camera in real time.
+struct SceneLiveRobots {
+  std::vector<std::size_t> layouts;  ///< that they may have, indices into Scene::layouts
+  double hold_s = 0.5;               ///< a robot that was not heard of for longer is gone
+};
+
+/// A time without frames, seconds since the scene's start.
+struct SceneBlackout {
+  double start_s = 0.0;
+  double length_s = 0.0;
+};
+
+/// How the frames of a scene in real time reach their reader: late, never, or at once as here.
+struct SceneDelivery {
+  double shortest_delay_s = 0.0;  ///< from the middle of the exposure; frames keep their order
+  double longest_delay_s = 0.0;
+  double loss = 0.0;  ///< share of frames that never arrive, below 1
+  std::vector<SceneBlackout> blackouts;
+};
+
 /// Points of the marker plane for a calibration: a grid over the whole image.
 struct ScenePoints {
   int columns = 12;
@@ -131,6 +152,8 @@ struct Scene {
   std::vector<RobotBody> bodies;  ///< one for each layout
   std::vector<SceneRobot> robots;
   std::vector<RandomRobots> random_robots;
+  std::optional<SceneLiveRobots> live_robots;
+  SceneDelivery delivery;
   ScenePoints points;
 };
 

@@ -7,6 +7,7 @@
 
 #include "vision/input/strict_yaml.h"
 #include "vision/synthetic/scene.h"
+#include "vision/synthetic/scene_file_live.h"
 #include "vision/synthetic/scene_file_paths.h"
 
 namespace nadir::vision {
@@ -34,13 +35,13 @@ class LayoutShelf {
       : folder_(std::move(folder)), scene_(scene) {}
 
   /// Index into Scene::layouts of the layout that `map` names.
-  std::size_t layout_of(const YamlMap& map) {
-    const std::string name = map.text("layout");
+  std::size_t layout_of(const YamlMap& map) { return layout_of(map, "layout", map.text("layout")); }
+  std::size_t layout_of(const YamlMap& map, const std::string& key, const std::string& name) {
     const auto known = indices_.find(name);
     if (known != indices_.end()) return known->second;
     const std::filesystem::path file = folder_ / name;
     if (!std::filesystem::exists(file)) {
-      throw map.error("layout", "there is no layout file '" + name + "'",
+      throw map.error(key, "there is no layout file '" + name + "'",
                       "name it relative to the scene file");
     }
     scene_.layouts.push_back(load_marker_layout(file));
@@ -208,6 +209,18 @@ void read_random_robots(const YamlMap& map, LayoutShelf& shelf, Scene& scene) {
   scene.random_robots.push_back(wish);
 }
 
+void read_live_robots(const YamlMap& map, LayoutShelf& shelf, Scene& scene) {
+  SceneLiveRobots live;
+  for (const std::string& name : map.texts("layouts")) {
+    live.layouts.push_back(shelf.layout_of(map, "layouts", name));
+    shelf.read_body(map, live.layouts.back());
+  }
+  if (live.layouts.empty()) throw map.error("layouts", "the list is empty", "name a layout");
+  live.hold_s = 1e-3 * map.number_or("hold_ms", 1e3 * live.hold_s, {1.0, 60000.0});
+  map.finish();
+  scene.live_robots = live;
+}
+
 /// Throws if the lens cannot exist.
 void read_camera(const YamlMap& map, Scene& scene) {
   CameraParameters& camera = scene.camera;
@@ -274,6 +287,7 @@ Scene load_scene(const std::filesystem::path& file) {
   if (map.has("random_robots")) {
     for (const YamlMap& entry : map.maps("random_robots")) read_random_robots(entry, shelf, scene);
   }
+  if (const auto live = map.map_if_present("live_robots")) read_live_robots(*live, shelf, scene);
   // The camera's scale and the points' height refer to the first layout, so they come after the
   // robots.
   read_camera(map.has("camera") ? map.map("camera") : YamlMap::parse("{}", file.string()), scene);
@@ -288,6 +302,13 @@ Scene load_scene(const std::filesystem::path& file) {
   if (const auto light = map.map_if_present("light")) read_light(*light, scene.light);
   if (const auto floor = map.map_if_present("floor")) read_floor(*floor, scene.floor);
   if (const auto clutter = map.map_if_present("clutter")) read_clutter(*clutter, scene.clutter);
+  if (const auto delivery = map.map_if_present("delivery")) {
+    if (!scene.live_robots) {
+      throw map.error("delivery", "only a scene with live_robots is a camera in real time",
+                      "remove it, or add live_robots");
+    }
+    scene.delivery = read_delivery(*delivery);
+  }
   scene.frames = static_cast<std::uint64_t>(map.integer_or("frames", 0, {0, kInfinity}));
   map.finish();
   return scene;
