@@ -64,7 +64,7 @@ AxesRange field_of(const Block& block) {
     high = high.cwiseMax(1e3 * tick.command.head<2>());
   }
   const Eigen::Vector2d middle = 0.5 * (low + high);
-  const double half = 0.5 * std::max((high - low).maxCoeff(), 100.0) * 1.3;
+  const double half = 0.5 * std::max((high - low).maxCoeff(), 100.0) * 1.4;
   return {middle.x() - half, middle.x() + half, middle.y() - half, middle.y() + half};
 }
 
@@ -135,7 +135,7 @@ std::string draw_block(const Block& block, std::size_t index) {
 std::string legend_entry(double& x, double y, const std::string& mark, double mark_width,
                          const std::string& words) {
   const std::string out = mark + svg_text(x + mark_width + 6.0, y + 4.0, words, "class=\"note\"");
-  x += mark_width + 6.0 + 6.2 * static_cast<double>(words.size()) + 20.0;
+  x += mark_width + 6.0 + 5.8 * static_cast<double>(words.size()) + 18.0;
   return out;
 }
 
