@@ -105,17 +105,20 @@ std::string line(const char* key, double value) {
   return fmt::format("  {}: {}\n", key, vision::text_from_number(value));
 }
 
+std::string line(const char* key, std::chrono::nanoseconds span) {
+  return line(key, std::chrono::duration<double>(span).count());
+}
+
 std::string odometry_yaml(const FuseConfig& config) {
   const OdometryCheck& check = config.odometry_check;
   return "odometry:\n" + line("lead_s", config.odometry_lead_s) +
          line("walk_u_m_per_sqrt_s", config.walk.u_m_per_sqrt_s) +
          line("walk_v_m_per_sqrt_s", config.walk.v_m_per_sqrt_s) +
          line("walk_r_rad_per_sqrt_s", config.walk.r_rad_per_sqrt_s) +
-         line("join_tolerance_s", to_seconds(check.join_tolerance)) +
-         line("longest_interval_s", to_seconds(check.longest_interval)) +
-         line("longest_gap_s", to_seconds(check.longest_gap)) +
-         line("restart_after", check.restart_after) + line("fastest_mps", check.fastest_mps) +
-         line("fastest_radps", check.fastest_radps);
+         line("join_tolerance_s", check.join_tolerance) +
+         line("longest_interval_s", check.longest_interval) +
+         line("longest_gap_s", check.longest_gap) + line("restart_after", check.restart_after) +
+         line("fastest_mps", check.fastest_mps) + line("fastest_radps", check.fastest_radps);
 }
 
 std::string gate_yaml(const Gate& gate) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <random>
 #include <sstream>
 #include <stdexcept>
@@ -71,13 +72,8 @@ std::vector<VisionRow> vision_of(const MrclamFeed& feed, const MrclamProtocol& p
   return vision;
 }
 
-}  // namespace
-
-std::filesystem::path mrclam_folder() { return std::filesystem::path(NADIR_REAL_DIR) / "mrclam6"; }
-
-bool has_mrclam() { return std::filesystem::exists(mrclam_folder() / "Robot1_Odometry.dat"); }
-
-MrclamFeed load_mrclam(int robot, const MrclamProtocol& protocol) {
+/// Odometry and truth.
+MrclamFeed read_recording(int robot) {
   const std::string name = "Robot" + std::to_string(robot);
   const auto rates = read_rows(mrclam_folder() / (name + "_Odometry.dat"), 3);
   if (rates.empty()) throw std::runtime_error("no odometry of " + name);
@@ -89,6 +85,19 @@ MrclamFeed load_mrclam(int robot, const MrclamProtocol& protocol) {
     feed.odometry.push_back({t_s, {row[1], 0.0, row[2]}, 0});
   }
   feed.truth = read_truth(mrclam_folder() / (name + "_Groundtruth.dat"), start_s);
+  return feed;
+}
+
+}  // namespace
+
+std::filesystem::path mrclam_folder() { return std::filesystem::path(NADIR_REAL_DIR) / "mrclam6"; }
+
+bool has_mrclam() { return std::filesystem::exists(mrclam_folder() / "Robot1_Odometry.dat"); }
+
+MrclamFeed load_mrclam(int robot, const MrclamProtocol& protocol) {
+  static std::map<int, MrclamFeed> recordings;  // the files are read once
+  if (recordings.count(robot) == 0) recordings.emplace(robot, read_recording(robot));
+  MrclamFeed feed = recordings.at(robot);
   feed.vision = vision_of(feed, protocol);
   return feed;
 }
