@@ -1,0 +1,163 @@
+#include "fusion/odometry_error_wheel_slip.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "fusion/pose_filter.h"
+#include "tests/fusion/numeric_jacobian.h"
+#include "tests/fusion/random_stream.h"
+
+namespace nadir::fusion {
+namespace {
+
+using Three = WheelSlipError<3>;
+using SlipFilter = PoseFilter<AboutEstimate, Three>;
+
+OdometryStep accelerating_step() { return {{0.20, -0.05, 0.6}, {0.15, 0.02, 0.4}, 0.02, 0.02}; }
+
+WheelGeometry geometry() { return WheelGeometry::three_wheel(0.07); }
+
+/// What the encoders of wheels with these scales and slip times would have measured.
+BodyRates measured_with(const Eigen::Matrix<double, 6, 1>& error, const BodyRates& rates,
+                        const BodyRates& before, double interval_s) {
+  const WheelValues speed = geometry().rim_speeds_mps(rates);
+  const WheelValues acceleration = (speed - geometry().rim_speeds_mps(before)) / interval_s;
+  WheelValues measured = speed;
+  for (int i = 0; i < 3; ++i) measured[i] += error[i] * speed[i] + error[3 + i] * acceleration[i];
+  return geometry().body_rates(measured);
+}
+
+TEST(OdometryErrorDecay, IsTheExponential) {
+  for (const double x : {0.0, 1e-9, 1e-3, 0.02, 0.124, 0.126, 0.5, 1.0, 3.0, 20.0, 100.0}) {
+    EXPECT_NEAR(decay(x, 1.0), std::exp(-x), (x > 1.0 ? 1e-12 : 1e-14) * std::exp(-x)) << x;
+  }
+  EXPECT_EQ(decay(1e9, 0.5), 0.0);
+  EXPECT_DOUBLE_EQ(decay(0.02, 0.5), decay(0.01, 0.25));
+}
+
+TEST(WheelSlipError, DerivativeByTheErrorsIsThatOfFiniteDifferences) {
+  const Three model;
+  const OdometryStep step = accelerating_step();
+  Eigen::Matrix<double, 6, 1> error;
+  error << 0.01, -0.02, 0.005, 0.03, -0.01, 0.02;
+  const auto rates = [&](const Eigen::Matrix<double, 6, 1>& e) -> Eigen::Vector3d {
+    return model.corrected(step, e).rates.vector();
+  };
+  const auto numeric = test::numeric_jacobian<3, 6>(rates, error);
+  EXPECT_LT((model.corrected(step, error).by_error - numeric).norm(), 1e-9);
+}
+
+TEST(WheelSlipError, TakesOutTheErrorsThatItKnows) {
+  const BodyRates truth{0.20, -0.05, 0.6};
+  const BodyRates before{0.18, -0.04, 0.55};
+  const BodyRates earlier{0.16, -0.03, 0.50};
+  Eigen::Matrix<double, 6, 1> error;
+  error << 0.010, -0.008, 0.004, 0.02, 0.03, -0.01;
+  const BodyRates measured = measured_with(error, truth, before, 0.02);
+  const BodyRates measured_before = measured_with(error, before, earlier, 0.02);
+  const auto corrected = Three().corrected({measured, measured_before, 0.02, 0.02}, error);
+  const double uncorrected = (measured.vector() - truth.vector()).norm();
+  EXPECT_GT(uncorrected, 0.01);
+  // Measured speeds stand for the true ones: what is left is of second order.
+  EXPECT_LT((corrected.rates.vector() - truth.vector()).norm(), 0.05 * uncorrected);
+}
+
+TEST(WheelSlipError, StandingRobotHasNoErrorsButWhiteNoise) {
+  Eigen::Matrix<double, 6, 1> error = Eigen::Matrix<double, 6, 1>::Constant(0.05);
+  const auto corrected = Three().corrected({{}, {}, 0.02, 0.02}, error);
+  EXPECT_EQ(corrected.rates.vector().norm(), 0.0);
+  EXPECT_EQ(corrected.by_error.norm(), 0.0);
+  const Eigen::Matrix3d expected = geometry().rate_covariance(0.006) * 0.02;
+  EXPECT_LT((corrected.white_intensity - expected).norm(), 1e-12);
+}
+
+TEST(WheelSlipError, SlipTimesAreAStationaryGaussMarkovProcess) {
+  const Three model(geometry(), {0.02, 0.03, 0.7, 0.006});
+  OdometryStep step = accelerating_step();
+  auto covariance = model.initial_covariance();
+  for (int i = 0; i < 200; ++i) {
+    step.dt_s = i % 2 == 0 ? 0.02 : 0.005;
+    const auto change = model.transition(step);
+    covariance =
+        change.transition * covariance * change.transition.transpose() + change.noise_covariance;
+  }
+  EXPECT_LT((covariance - model.initial_covariance()).norm(), 1e-12);
+  // Correlation between two times: e^(-dt / correlation time).
+  step.dt_s = 0.02;
+  EXPECT_NEAR(model.transition(step).transition(5, 5), std::exp(-0.02 / 0.7), 1e-12);
+  EXPECT_EQ(model.transition(step).transition(2, 2), 1.0);
+}
+
+TEST(WheelSlipError, SplitIntervalEndsWithTheSameCovariance) {
+  SlipFilter whole;
+  whole.start({0.1, 0.2, 0.3}, Eigen::Vector3d(1e-6, 1e-6, 1e-4).asDiagonal());
+  SlipFilter split = whole;
+  OdometryStep step = accelerating_step();
+  whole.predict(step);
+  step.dt_s = 0.007;
+  split.predict(step);
+  step.dt_s = 0.013;
+  split.predict(step);
+  EXPECT_LT(pose_difference(whole.state().pose, split.state().pose).norm(), 1e-12);
+  const auto& expected = whole.state().covariance;
+  EXPECT_LT((split.state().covariance - expected).norm(), 0.01 * expected.norm());
+}
+
+TEST(WheelSlipError, FilterFindsTheScalesOfTheWheels) {
+  test::RandomStream random(12);
+  Eigen::Matrix<double, 6, 1> error = Eigen::Matrix<double, 6, 1>::Zero();
+  error.head<3>() << 0.015, -0.020, 0.010;
+  SlipFilter filter;
+  filter.start({}, Eigen::Vector3d(1e-6, 1e-6, 1e-4).asDiagonal());
+  const PoseCovariance r = Eigen::Vector3d(4e-6, 4e-6, 4e-4).asDiagonal();
+  PlanarPose truth;
+  BodyRates before_measured;
+  for (int k = 1; k <= 3000; ++k) {
+    const double t = 0.02 * k;
+    const BodyRates rates{0.3 * std::sin(0.4 * t), 0.3 * std::cos(0.7 * t),
+                          0.5 * std::sin(0.3 * t)};
+    const BodyRates measured = measured_with(error, rates, rates, 0.02);
+    truth = moved(truth, rates, 0.02);
+    filter.predict({measured, before_measured, 0.02, 0.02});
+    before_measured = measured;
+    if (k % 2 != 0) continue;
+    const Eigen::Vector3d noise = random.normal(r);
+    filter.correct(
+        {truth.x_m + noise.x(), truth.y_m + noise.y(), wrap_angle(truth.heading_rad + noise.z())},
+        r);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double sigma = std::sqrt(filter.state().covariance(3 + i, 3 + i));
+    EXPECT_LT(sigma, 0.004);
+    EXPECT_NEAR(filter.state().odometry_error[i], error[i], 3.0 * sigma) << i;
+  }
+}
+
+TEST(WheelSlipError, FourWheelsOnOneRobot) {
+  constexpr double kPi = std::numbers::pi;
+  const auto four = WheelGeometry::four_wheel(Eigen::Vector4d(0.25, 0.75, 1.25, 1.75) * kPi, 0.085);
+  const WheelSlipError<4> model(four, {});
+  const OdometryStep step = accelerating_step();
+  Eigen::Matrix<double, 8, 1> error = Eigen::Matrix<double, 8, 1>::Constant(0.01);
+  const auto rates = [&](const Eigen::Matrix<double, 8, 1>& e) -> Eigen::Vector3d {
+    return model.corrected(step, e).rates.vector();
+  };
+  const auto numeric = test::numeric_jacobian<3, 8>(rates, error);
+  EXPECT_LT((model.corrected(step, error).by_error - numeric).norm(), 1e-9);
+  // The same scale of all wheels is that of all rates.
+  error.tail<4>().setZero();
+  EXPECT_LT((model.corrected(step, error).rates.vector() - 0.99 * step.mean_rates.vector()).norm(),
+            1e-12);
+}
+
+TEST(WheelSlipError, RefusesWhatIsNoRobot) {
+  EXPECT_THROW(Three(WheelGeometry::differential(0.2), {}), std::invalid_argument);
+  EXPECT_THROW(Three(geometry(), {-0.02, 0.03, 1.0, 0.006}), std::invalid_argument);
+  EXPECT_THROW(Three(geometry(), {0.02, 0.03, 0.0, 0.006}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace nadir::fusion
