@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/fusion/rate_bias_model.h"
+
 namespace nadir::fusion::test {
 namespace {
 
@@ -61,14 +63,25 @@ std::vector<Frame> captures(const FeedOptions& options, RandomStream& random) {
 class World {
  public:
   World(const FeedOptions& options, const PlanarPose& start)
-      : options_(options), random_(3 * options.seed + 1), truth_(start) {}
+      : options_(options),
+        random_(3 * options.seed + 1),
+        truth_(start),
+        bias_(random_.normal(model_.initial_covariance())) {}
 
   void drive(const BodyRates& measured, double dt_s) {
     if (dt_s <= 0.0) return;
-    const Eigen::Matrix3d covariance =
-        options_.rate_covariance * (options_.odometry_period_s / dt_s);
-    const Eigen::Vector3d noise = random_.normal(covariance);
-    truth_ = moved(truth_, BodyRates::from(measured.vector() - noise), dt_s);
+    Eigen::Matrix3d intensity = options_.rate_covariance * options_.odometry_period_s;
+    BodyRates unbiased = measured;
+    if (options_.has_rate_bias) {
+      const OdometryStep step{measured, measured, dt_s, dt_s};
+      const CorrectedRates<3> corrected = model_.corrected(step, bias_);
+      const ErrorTransition<3> change = model_.transition(step);
+      unbiased = corrected.rates;
+      intensity = corrected.white_intensity;
+      bias_ = change.transition * bias_ + random_.normal(change.noise_covariance);
+    }
+    const Eigen::Vector3d noise = random_.normal(Eigen::Matrix3d(intensity / dt_s));
+    truth_ = moved(truth_, BodyRates::from(unbiased.vector() - noise), dt_s);
   }
 
   void slip() {
@@ -98,6 +111,8 @@ class World {
   const FeedOptions& options_;
   RandomStream random_;
   PlanarPose truth_;
+  RateBiasModel model_;
+  Eigen::Vector3d bias_;
 };
 
 void lose_frames(const FeedOptions& options, RandomStream& random, std::vector<Frame>& frames) {

@@ -9,7 +9,7 @@
 namespace nadir::fusion::test {
 
 /// What happens to a simulated robot and its cameras. The truth is kinematic: smooth measured rates
-/// minus white noise of the filter's own model, so that covariances can be checked.
+/// minus noise of the filter's own model, so that covariances can be checked.
 struct FeedOptions {
   std::uint64_t seed = 1;
   double duration_s = 6.0;
@@ -23,6 +23,7 @@ struct FeedOptions {
   double least_delay_s = 0.06;
   double most_delay_s = 0.10;
   bool is_slipping = false;    ///< jumps of 5 cm and 0.2 rad that odometry does not see
+  bool has_rate_bias = false;  ///< noise of RateBiasModel instead of the white one
   double odometry_gaps = 0.0;  ///< share of the odometry that is lost, in runs of some samples
   Eigen::Matrix3d rate_covariance = Eigen::Vector3d(6e-4, 6e-4, 0.0612).asDiagonal();
   PoseCovariance start_covariance = Eigen::Vector3d(1e-6, 1e-6, 1e-4).asDiagonal();

@@ -2,57 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
+#include "tests/support/allocation_counter.h"
 #include "tests/tracker/synthetic_setup.h"
 #include "tracker/pose_log.h"
-
-namespace {
-std::atomic<long> g_allocations{0};
-
-void* counted(std::size_t size) {
-  ++g_allocations;
-  void* memory = std::malloc(size > 0 ? size : 1);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-
-void* counted(std::size_t size, std::align_val_t alignment) {
-  ++g_allocations;
-  const auto align = static_cast<std::size_t>(alignment);
-  void* memory = std::aligned_alloc(align, (size + align - 1) / align * align);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted(size, alignment);
-}
-void* operator new[](std::size_t size, std::align_val_t alignment) {
-  return counted(size, alignment);
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 namespace nadir::tracker {
 namespace {
 
 TEST(NoAllocation, CounterCounts) {
-  const long before = g_allocations;
+  const long before = test::allocations();
   const std::vector<int> numbers(100);
-  EXPECT_EQ(g_allocations - before, 1) << numbers.size();
+  EXPECT_EQ(test::allocations() - before, 1) << numbers.size();
 }
 
 TEST(NoAllocation, FromFrameToReportAndJsonAfterStartUp) {
@@ -70,9 +32,9 @@ TEST(NoAllocation, FromFrameToReportAndJsonAfterStartUp) {
       append_json(report, line);
     };
     for (const vision::Frame& frame : frames) work(frame);
-    const long before = g_allocations;
+    const long before = test::allocations();
     for (const vision::Frame& frame : frames) work(frame);
-    EXPECT_EQ(g_allocations - before, 0) << scene;
+    EXPECT_EQ(test::allocations() - before, 0) << scene;
   }
 }
 
