@@ -75,7 +75,8 @@ class PoseFilter {
   Covariance predict(const OdometryStep& step, const Nominal& nominal = {});
 
   /// A time without odometry: the pose becomes uncertain (GapMotion).
-  void predict_gap(const BodyRates& last_rates, double dt_s);
+  /// Returns F as predict does.
+  Covariance predict_gap(const BodyRates& last_rates, double dt_s);
 
   /// Steps 2 and 3: gate, and correction with the full 3x3 covariance of the measured pose. The
   /// first pose starts the filter.
@@ -130,17 +131,18 @@ auto PoseFilter<Linearization, OdometryError>::predict(const OdometryStep& step,
 }
 
 template <class Linearization, OdometryErrorModel OdometryError>
-void PoseFilter<Linearization, OdometryError>::predict_gap(const BodyRates& last_rates,
-                                                           double dt_s) {
-  if (!state_.has_started) return;
+auto PoseFilter<Linearization, OdometryError>::predict_gap(const BodyRates& last_rates, double dt_s)
+    -> Covariance {
+  if (!state_.has_started) return Covariance::Identity();
   const BodyRates rates = settings_.gap.rates(last_rates, dt_s);
-  predict({rates, rates, dt_s, dt_s}, Nominal{});
+  const Covariance f = predict({rates, rates, dt_s, dt_s}, Nominal{});
   const double sigma_m = settings_.gap.sigma_m(dt_s);
   const double sigma_rad = settings_.gap.sigma_rad(dt_s);
   state_.covariance(0, 0) += sigma_m * sigma_m;
   state_.covariance(1, 1) += sigma_m * sigma_m;
   state_.covariance(2, 2) += sigma_rad * sigma_rad;
   state_.rejected = RejectedRun{};
+  return f;
 }
 
 template <class Linearization, OdometryErrorModel OdometryError>
