@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "control_client/experiment_command.h"
+#include "control_client/experiment/experiment_command.h"
 #include "vision/input/input_error.h"
 #include "vision/input/usage_line.h"
 

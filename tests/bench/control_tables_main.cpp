@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "control_client/experiment_report.h"
-#include "control_client/experiment_runner.h"
+#include "control_client/experiment/experiment_report.h"
+#include "control_client/experiment/experiment_runner.h"
 #include "tests/bench/control_reference.h"
 #include "tests/bench/json_file.h"
 

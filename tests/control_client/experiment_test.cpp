@@ -1,14 +1,14 @@
 // The closed loop, and the filter in it, against bounds that hold for any filter.
 
-#include "control_client/experiment.h"
+#include "control_client/experiment/experiment.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "control_client/cramer_rao_bound.h"
-#include "control_client/fusion_estimator.h"
-#include "control_client/run_metrics.h"
+#include "control_client/experiment/cramer_rao_bound.h"
+#include "control_client/experiment/fusion_estimator.h"
+#include "control_client/experiment/run_metrics.h"
 
 namespace nadir::control_client {
 namespace {

@@ -1,4 +1,4 @@
-#include "control_client/experiment.h"
+#include "control_client/experiment/experiment.h"
 
 #include <algorithm>
 #include <cassert>

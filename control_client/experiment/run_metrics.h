@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "control_client/experiment.h"
+#include "control_client/experiment/experiment.h"
 
 namespace nadir::control_client {
 

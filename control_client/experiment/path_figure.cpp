@@ -1,4 +1,4 @@
-#include "control_client/path_figure.h"
+#include "control_client/experiment/path_figure.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "control_client/svg_axes.h"
+#include "control_client/experiment/svg_axes.h"
 
 namespace nadir::control_client {
 namespace {

@@ -1,8 +1,8 @@
-#include "control_client/estimator_kinds.h"
+#include "control_client/experiment/estimator_kinds.h"
 
 #include <stdexcept>
 
-#include "control_client/fusion_estimator.h"
+#include "control_client/experiment/fusion_estimator.h"
 
 namespace nadir::control_client {
 

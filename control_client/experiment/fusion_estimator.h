@@ -3,7 +3,7 @@
 #include <map>
 #include <type_traits>
 
-#include "control_client/estimator.h"
+#include "control_client/experiment/estimator.h"
 #include "fusion/delayed_fusion.h"
 #include "fusion/wheel_geometry.h"
 

@@ -1,10 +1,10 @@
-#include "control_client/experiment_runner.h"
+#include "control_client/experiment/experiment_runner.h"
 
 #include <cmath>
 #include <memory>
 
-#include "control_client/cramer_rao_bound.h"
-#include "control_client/fusion_estimator.h"
+#include "control_client/experiment/cramer_rao_bound.h"
+#include "control_client/experiment/fusion_estimator.h"
 
 namespace nadir::control_client {
 namespace {

@@ -1,4 +1,4 @@
-#include "control_client/experiment_catalogue.h"
+#include "control_client/experiment/experiment_catalogue.h"
 
 #include <fmt/format.h>
 

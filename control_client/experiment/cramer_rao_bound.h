@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "control_client/run_metrics.h"
+#include "control_client/experiment/run_metrics.h"
 #include "fusion/planar_pose.h"
 
 namespace nadir::control_client {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "control_client/estimator_kinds.h"
-#include "control_client/experiment.h"
+#include "control_client/experiment/estimator_kinds.h"
+#include "control_client/experiment/experiment.h"
 
 namespace nadir::control_client {
 

@@ -1,4 +1,4 @@
-#include "control_client/experiment_command.h"
+#include "control_client/experiment/experiment_command.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "control_client/experiment_report.h"
-#include "control_client/experiment_runner.h"
-#include "control_client/path_figure.h"
+#include "control_client/experiment/experiment_report.h"
+#include "control_client/experiment/experiment_runner.h"
+#include "control_client/experiment/path_figure.h"
 #include "control_client/trajectory.h"
 #include "vision/input/input_error.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "control_client/experiment_runner.h"
+#include "control_client/experiment/experiment_runner.h"
 
 namespace nadir::control_client {
 

@@ -1,4 +1,4 @@
-#include "control_client/estimator.h"
+#include "control_client/experiment/estimator.h"
 
 #include "fusion/odometry.h"
 

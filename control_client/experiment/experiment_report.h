@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "control_client/experiment_runner.h"
+#include "control_client/experiment/experiment_runner.h"
 
 namespace nadir::control_client {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "control_client/estimator.h"
+#include "control_client/experiment/estimator.h"
 #include "fusion/wheel_geometry.h"
 
 namespace nadir::control_client {

@@ -1,4 +1,4 @@
-#include "control_client/run_metrics.h"
+#include "control_client/experiment/run_metrics.h"
 
 #include <Eigen/LU>
 #include <algorithm>

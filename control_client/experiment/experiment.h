@@ -6,7 +6,7 @@
 
 #include "control_client/control_loop.h"
 #include "control_client/control_parameters.h"
-#include "control_client/estimator.h"
+#include "control_client/experiment/estimator.h"
 #include "control_client/simulation/encoders.h"
 #include "control_client/simulation/faults.h"
 #include "control_client/simulation/vision_feed.h"

@@ -1,4 +1,4 @@
-#include "control_client/experiment_report.h"
+#include "control_client/experiment/experiment_report.h"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "control_client/experiment_catalogue.h"
-#include "control_client/run_metrics.h"
+#include "control_client/experiment/experiment_catalogue.h"
+#include "control_client/experiment/run_metrics.h"
 
 namespace nadir::control_client {
 

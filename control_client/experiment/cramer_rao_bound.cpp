@@ -1,4 +1,4 @@
-#include "control_client/cramer_rao_bound.h"
+#include "control_client/experiment/cramer_rao_bound.h"
 
 #include <Eigen/LU>
 #include <algorithm>

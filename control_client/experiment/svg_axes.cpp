@@ -1,4 +1,4 @@
-#include "control_client/svg_axes.h"
+#include "control_client/experiment/svg_axes.h"
 
 #include <fmt/format.h>
 
