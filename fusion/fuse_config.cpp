@@ -59,6 +59,7 @@ void read_vision(const YamlMap& map, FuseConfig* config) {
 
 void read_gate(const YamlMap& map, Gate* gate) {
   std::vector<std::string> names;
+  names.reserve(kGates.size());
   for (const GateName& known : kGates) names.emplace_back(known.name);
   const std::string name = map.choice_or("kind", names.front(), names);
   for (const GateName& known : kGates) {

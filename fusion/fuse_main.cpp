@@ -12,6 +12,7 @@
 #include "fusion/fuse_report.h"
 #include "fusion/fuse_run.h"
 #include "fusion/fuse_score.h"
+#include "fusion/fuse_smooth.h"
 #include "vision/input/input_error.h"
 #include "vision/input/usage_line.h"
 
@@ -30,6 +31,7 @@ struct Options {
   std::string truth;
   std::string output;
   std::string json;
+  std::string smooth;
   bool print_config = false;
 };
 
@@ -62,6 +64,9 @@ void describe_options(CLI::App& app, Options& options) {
       ->type_name("EST.csv");
   app.add_option("--json", options.json, "errors, consistency, verdicts; - is stdout")
       ->type_name("SUMMARY.json");
+  app.add_option("--smooth", options.smooth,
+                 "the same rows by all of the logs, the future included (a reference)")
+      ->type_name("FILE");
   app.add_flag("--print-config", options.print_config, "print the effective settings and end");
 }
 
@@ -116,6 +121,10 @@ void run(const Options& options) {
   write_text(options.output, estimates_csv(result.estimates));
   if (!options.json.empty()) write_text(options.json, summary_json(result, errors));
   std::cerr << summary_text(result, errors, options.poses);
+  if (options.smooth.empty()) return;
+  const auto smoothed = nadir::fusion::smooth(logs, config);
+  write_text(options.smooth, estimates_csv(smoothed));
+  if (truth) std::cerr << "smoothed: " << score_text(score(smoothed, *truth));
 }
 
 }  // namespace

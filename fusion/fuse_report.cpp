@@ -139,19 +139,20 @@ std::string summary_json(const FuseRun& run, const std::optional<FuseScore>& sco
   return json.dump(2) + "\n";
 }
 
+std::string score_text(const FuseScore& score) {
+  if (score.compared == 0) return "no estimate has truth at its time\n";
+  return fmt::format(
+      "position RMS {:.2f} mm (largest {:.1f} mm), heading RMS {:.2f} deg, NEES {:.2f} (3 is "
+      "honest) at {} rows\n",
+      score.position_rms_m * kMmPerM, score.position_max_m * kMmPerM,
+      score.heading_rms_rad * kDegPerRad, score.nees, score.compared);
+}
+
 std::string summary_text(const FuseRun& run, const std::optional<FuseScore>& score,
                          const std::string& vision_file) {
   const VisionCounts counts = count_vision(run.health);
   std::string text;
-  if (score && score->compared > 0) {
-    text += fmt::format(
-        "position RMS {:.2f} mm (largest {:.1f} mm), heading RMS {:.2f} deg, NEES {:.2f} (3 is "
-        "honest) at {} rows\n",
-        score->position_rms_m * kMmPerM, score->position_max_m * kMmPerM,
-        score->heading_rms_rad * kDegPerRad, score->nees, score->compared);
-  } else if (score) {
-    text += "no estimate has truth at its time\n";
-  }
+  if (score) text += score_text(*score);
   text += fmt::format("{} poses accepted (NIS {:.2f}), {} rejected, {} recovered", counts.accepted,
                       mean_nis(run.decisions), counts.rejected, counts.recovered);
   if (run.not_arrived > 0) text += fmt::format("; {} arrive after the odometry", run.not_arrived);

@@ -15,8 +15,11 @@ std::string estimates_csv(const std::vector<EstimateRow>& rows);
 /// SUMMARY.json of the contract, and how often each verdict fell. Errors are null without truth.
 std::string summary_json(const FuseRun& run, const std::optional<FuseScore>& score);
 
-/// The same for a person, a few lines; then a line for each kind of row that was refused for what
-/// it is, with the first such row. `vision_file` is for these lines.
+/// The errors in a line.
+std::string score_text(const FuseScore& score);
+
+/// The summary for a person, a few lines; then a line for each kind of row that was refused for
+/// what it is, with the first such row. `vision_file` is for these lines.
 std::string summary_text(const FuseRun& run, const std::optional<FuseScore>& score,
                          const std::string& vision_file);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -137,6 +138,29 @@ TEST_F(FuseCommand, IsCausal) {
   };
   EXPECT_EQ(nth_line(all, 302), nth_line(early, 302));
   EXPECT_NE(all, early);
+}
+
+/// Of the estimates against the demo's truth, from the second second on.
+double position_rms_m(const std::filesystem::path& file) {
+  const auto estimates = vision::CsvTable::load(file, {"t_s", "x_m", "y_m"});
+  const auto truth = vision::CsvTable::load(kDemo / "truth.csv", {"t_s", "x_m", "y_m"});
+  double squares = 0.0;
+  int count = 0;
+  // The truth's rows are those of the odometry from the second on.
+  for (std::size_t i = 50; i < truth.rows() && i + 1 < estimates.rows(); ++i) {
+    EXPECT_NEAR(estimates.number(i + 1, 0), truth.number(i, 0), 1e-9);
+    squares += std::pow(estimates.number(i + 1, 1) - truth.number(i, 1), 2) +
+               std::pow(estimates.number(i + 1, 2) - truth.number(i, 2), 2);
+    ++count;
+  }
+  return std::sqrt(squares / count);
+}
+
+TEST_F(FuseCommand, SmoothedPosesAreFarBetterThanTheFilters) {
+  const std::string smoothed = scratch_.path() / "smoothed.csv";
+  ASSERT_EQ(fuse({"--smooth", smoothed}).code, 0);
+  EXPECT_LT(position_rms_m(estimates_), 0.004);
+  EXPECT_LT(position_rms_m(smoothed), 0.7 * position_rms_m(estimates_));
 }
 
 TEST_F(FuseCommand, StdoutIsForOneOfTheTwo) {
