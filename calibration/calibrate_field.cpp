@@ -2,13 +2,16 @@
 
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 
 #include "calibration/calibrate_commands.h"
 #include "calibration/calibration_file.h"
 #include "calibration/calibration_summary.h"
-#include "calibration/field_points.h"
-#include "calibration/fit.h"
+#include "calibration/field_calibration.h"
+#include "calibration/survey_file.h"
 #include "vision/input/input_error.h"
 
 namespace nadir::calibration {
@@ -28,6 +31,10 @@ struct FieldOptions {
   std::string output;
   StatedNoise noise;
   std::string image_size;
+  std::optional<double> camera_height_m;
+  std::string nadir;
+  std::optional<double> focal_px;
+  bool force = false;
   std::string json;
 };
 
@@ -46,28 +53,72 @@ ImageSize image_size_from_text(const std::string& text) {
 
 CLI::Validator known_model() {
   return {[](const std::string& name) -> std::string {
-            if (name == "polynomial2") return "";
-            return "this version of nadir fits polynomial2, not '" + name + "'";
+            if (name == "auto" || model_from_name(name)) return "";
+            return "'" + name +
+                   "' is none of polynomial2, polynomial3, polynomial4, polynomial5, " +
+                   "homography, radial, radial2, auto";
           },
           ""};
+}
+
+/// "1.5,-0.25".
+Eigen::Vector2d place_from_text(const std::string& text) {
+  std::istringstream stream(text);
+  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
+  char separator = 0;
+  stream >> place_m.x() >> separator >> place_m.y();
+  const bool is_read = stream && stream.peek() == std::istringstream::traits_type::eof();
+  if (!is_read || separator != ',' || !place_m.allFinite()) {
+    throw InputError({}, "--nadir is '" + text + "'", "write it like 1.5,-0.25");
+  }
+  return place_m;
+}
+
+FieldSettings settings_of(const FieldOptions& options) {
+  FieldSettings settings;
+  settings.model = model_from_name(options.model);  // nothing for auto
+  settings.height_m = options.height_m;
+  settings.noise = options.noise;
+  if (!options.image_size.empty()) {
+    const ImageSize size = image_size_from_text(options.image_size);
+    settings.image_width_px = size.width_px;
+    settings.image_height_px = size.height_px;
+  }
+  if (options.camera_height_m.has_value() == options.nadir.empty()) {
+    throw InputError({}, "--camera-height and --nadir belong together", "give both or none");
+  }
+  settings.camera.height_m = options.camera_height_m;
+  if (!options.nadir.empty()) settings.camera.nadir_m = place_from_text(options.nadir);
+  settings.camera.focal_px = options.focal_px;
+  if (options.camera_height_m && *options.camera_height_m <= options.height_m) {
+    throw InputError({}, "--camera-height is not above --height",
+                     "give both in metres above the field");
+  }
+  return settings;
 }
 
 void run(const FieldOptions& options) {
   if (options.output == "-" && options.json == "-") {
     throw InputError({}, "-o and --json both want stdout", "give one of them a file");
   }
-  const ImageSize size =
-      options.image_size.empty() ? ImageSize{} : image_size_from_text(options.image_size);
-  const FieldPoints points = load_field_points(options.points);
-  const FieldFit fit = fit_polynomial2(points, options.noise);
-  const Calibration calibration{fit.map,           options.height_m, size.width_px, size.height_px,
-                                pixel_box(points), fit.residuals,    options.noise};
-  if (size.width_px > 0) {
-    check_image_size(calibration, options.points, size.width_px, size.height_px);
+  FieldSettings settings = settings_of(options);
+  Survey survey = load_survey(options.points, options.height_m);
+  settings.camera.other_heights = std::move(survey.others);
+  const FieldPoints& points = survey.plane;
+  const FieldResult result = calibrate_field(points, settings);
+  if (settings.image_width_px > 0) {
+    check_image_size(result.calibration, options.points, settings.image_width_px,
+                     settings.image_height_px);
   }
-  write_text(options.output, calibration_yaml(calibration));
-  if (!options.json.empty()) write_text(options.json, field_json(points, calibration, fit));
-  std::cerr << field_summary(points, calibration, fit);
+  // Wrong points make no calibration; what was asked for besides shows what is wrong with them.
+  const bool is_refused = result.assessment.grade == Grade::kFail && !options.force;
+  if (!is_refused) write_text(options.output, calibration_yaml(result.calibration));
+  if (!options.json.empty()) write_text(options.json, field_json(points, result));
+  std::cerr << field_summary(points, result);
+  if (is_refused) {
+    throw std::runtime_error(options.output +
+                             " is not written; correct the points, or insist with --force");
+  }
 }
 
 }  // namespace
@@ -75,8 +126,14 @@ void run(const FieldOptions& options) {
 void add_field_command(CLI::App& app) {
   const auto options = std::make_shared<FieldOptions>();
   CLI::App* command = app.add_subcommand("field", "fits a plane map to surveyed points");
-  command->add_option("points", options->points, "POINTS.csv: u_px,v_px,x_m,y_m")->required();
-  command->add_option("--model", options->model, "plane map: polynomial2")
+  command
+      ->add_option("points", options->points,
+                   "POINTS.csv: u_px,v_px,x_m,y_m; a column z_m holds the height above the field, "
+                   "and points at a second height tell where the camera is")
+      ->required();
+  command
+      ->add_option("--model", options->model,
+                   "plane map: polynomial2 to polynomial5, homography, radial, radial2, auto")
       ->check(known_model())
       ->capture_default_str();
   command->add_option("--height", options->height_m, "of the points' plane above the field, m")
@@ -93,7 +150,19 @@ void add_field_command(CLI::App& app) {
                    "error of measuring a point on the field, one sigma per axis, m")
       ->check(number_from_to(0.0, 10.0));
   command->add_option("--image-size", options->image_size,
-                      "WxH of the images, which the tracker will then insist on");
+                      "WxH of the images, which the tracker will then insist on; their middle is "
+                      "where a lens is taken to be centred");
+  command
+      ->add_option("--camera-height", options->camera_height_m,
+                   "of the camera above the field, m; with --nadir, markers at other heights are "
+                   "corrected for parallax")
+      ->check(number_from_to(0.0, 1000.0));
+  command->add_option("--nadir", options->nadir, "X,Y of the field below the camera, m");
+  command
+      ->add_option("--focal-px", options->focal_px,
+                   "focal length, px: tells the camera's place from the map itself")
+      ->check(number_from_to(1.0, 1e6));
+  command->add_flag("--force", options->force, "write the calibration although its grade is FAIL");
   command->add_option("--json", options->json, "residuals and remarks as JSON; - is stdout");
   command->footer(
       "Example: nadir-calibrate field points.csv --height 0.12 --pixel-noise 0.3 -o cal.yaml");

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calibration/diagnosis.h"
-
 namespace nadir::calibration {
 namespace {
 
@@ -29,6 +27,29 @@ double typical_sigma_m(const PlaneMap& map, const PixelBox& box) {
     }
   }
   return std::sqrt(sum_m2 / (kSteps * kSteps));
+}
+
+/// Residuals of the points that were fitted, and of points that the fit had not seen.
+std::string model_table(const FieldResult& result) {
+  const FieldAssessment& assessment = result.assessment;
+  std::string text = "  models        fitted  cross-validated  (RMS, mm)\n";
+  for (const ModelScore& score : assessment.models) {
+    if (!score.is_fitted) continue;
+    text += fmt::format("  {:<12}{:8.3f}  {:15.3f}{}{}\n", model_name(score.model),
+                        1e3 * score.residual_rms_m, 1e3 * score.cross_validated_rms_m,
+                        score.model == result.fit.map.kind() ? "  fitted here" : "",
+                        score.model == assessment.recommended ? "  recommended" : "");
+  }
+  return text;
+}
+
+std::string camera_text(const Calibration& calibration) {
+  if (!calibration.camera) return "  camera          place unknown: no other marker height\n";
+  const CameraPlace& camera = *calibration.camera;
+  return fmt::format(
+      "  camera          {:.3f} m (+- {:.3f}) above ({:.3f}, {:.3f}) m (+- {:.3f})\n",
+      camera.height_m, std::sqrt(camera.height_variance_m2), camera.nadir_m.x(), camera.nadir_m.y(),
+      std::sqrt(camera.nadir_covariance_m2.trace() / 2.0));
 }
 
 std::string residual_table(const ResidualStatistics& residuals) {
@@ -92,37 +113,70 @@ nlohmann::ordered_json residuals_json(const ResidualStatistics& residuals) {
 
 }  // namespace
 
-std::string field_summary(const FieldPoints& points, const Calibration& calibration,
-                          const FieldFit& fit) {
-  std::string text =
-      fmt::format("polynomial2 on {} points of {}, plane {} m above the field\n\n{}\n{}\n{}",
-                  fit.residuals.points, points.file, calibration.height_m,
-                  residual_table(fit.residuals), worst_table(points, fit), error_text(calibration));
-  const auto remarks = fit_remarks(points, calibration.noise, fit);
-  if (!remarks.empty()) text += "\n";
-  for (const std::string& remark : remarks) text += "note: " + remark + "\n";
+std::string field_summary(const FieldPoints& points, const FieldResult& result) {
+  const FieldAssessment& assessment = result.assessment;
+  std::string text = fmt::format(
+      "{}: {} on {} points of {}, plane {} m above the field\n\n{}\n{}\n{}\n{}{}",
+      grade_name(assessment.grade), model_name(result.fit.map.kind()), result.fit.residuals.points,
+      points.file, result.calibration.height_m, residual_table(result.fit.residuals),
+      model_table(result), worst_table(points, result.fit), error_text(result.calibration),
+      camera_text(result.calibration));
+  if (!assessment.findings.empty()) text += "\n";
+  for (const Finding& finding : assessment.findings) {
+    text +=
+        fmt::format("{}: {}\n", finding.grade == Grade::kPass ? "note" : grade_name(finding.grade),
+                    finding.text);
+  }
   return text;
 }
 
-std::string field_json(const FieldPoints& points, const Calibration& calibration,
-                       const FieldFit& fit) {
-  nlohmann::ordered_json json = residuals_json(fit.residuals);
+std::string field_json(const FieldPoints& points, const FieldResult& result) {
+  using Json = nlohmann::ordered_json;
+  const FieldFit& fit = result.fit;
+  const FieldAssessment& assessment = result.assessment;
+  Json json = residuals_json(fit.residuals);
   json["rms_px"] = fit.residuals.rms_px;
   json["p95_px"] = fit.residuals.p95_px;
   json["max_px"] = fit.residuals.max_px;
-  json["model"] = "polynomial2";
-  json["height_m"] = calibration.height_m;
-  json["explained_rms_m"] = calibration.noise.is_stated()
-                                ? nlohmann::ordered_json(fit.explained_rms_m)
-                                : nlohmann::ordered_json(nullptr);
-  json["worst"] = nlohmann::ordered_json::array();
+  json["model"] = model_name(fit.map.kind());
+  json["grade"] = grade_name(assessment.grade);
+  json["height_m"] = result.calibration.height_m;
+  json["explained_rms_m"] =
+      result.calibration.noise.is_stated() ? Json(fit.explained_rms_m) : Json(nullptr);
+  json["leave_one_out_rms_m"] = assessment.leave_one_out.rms_m;
+  json["cross_validated_rms_m"] = assessment.cross_validated.points > 0
+                                      ? Json(assessment.cross_validated.rms_m)
+                                      : Json(nullptr);
+  json["lack_of_fit"] = nullptr;
+  if (assessment.lack_of_fit) {
+    json["lack_of_fit"] = {{"chi_square", assessment.lack_of_fit->chi_square},
+                           {"degrees_of_freedom", assessment.lack_of_fit->degrees_of_freedom},
+                           {"p_value", assessment.lack_of_fit->p_value}};
+  }
+  json["recommended_model"] = model_name(assessment.recommended);
+  json["models"] = Json::array();
+  for (const ModelScore& score : assessment.models) {
+    if (!score.is_fitted) continue;
+    json["models"].push_back({{"model", model_name(score.model)},
+                              {"rms_m", score.residual_rms_m},
+                              {"cross_validated_rms_m", score.cross_validated_rms_m}});
+  }
+  json["worst"] = Json::array();
   for (const std::size_t index : worst_points(fit, kWorstShown)) {
     const PointResidual& residual = fit.point_residuals[index];
     json["worst"].push_back({{"line", points.points[index].line},
                              {"error_m", residual.distance_m},
                              {"error_px", residual.distance_px}});
   }
-  json["remarks"] = fit_remarks(points, calibration.noise, fit);
+  json["findings"] = Json::array();
+  json["remarks"] = Json::array();
+  for (const Finding& finding : assessment.findings) {
+    json["findings"].push_back({{"grade", grade_name(finding.grade)},
+                                {"kind", finding.kind},
+                                {"lines", finding.lines},
+                                {"text", finding.text}});
+    json["remarks"].push_back(finding.text);
+  }
   return json.dump() + "\n";
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -42,6 +43,18 @@ ResidualEstimate estimate_without_residuals(const PlaneMap& map, const FieldPoin
   return {LackOfFit::uniform(assumed_m2.mean()), assumed_m2};
 }
 
+/// Of a camera's points, whose distances in the image were made small: on the plane their noise
+/// differs from place to place. Polynomials take all points alike.
+std::function<Eigen::Vector2d(const vision::PixelPoint&)> noise_scale(const PlaneMap& map,
+                                                                      const FieldPoints& points,
+                                                                      const StatedNoise& noise) {
+  const StatedNoise taken = noise.is_stated() ? noise : StatedNoise{kAssumedPixelNoise_px, {}};
+  const Eigen::Vector2d mean_m2 = mean_variance_m2(point_covariances_m2(map, points, taken));
+  return [&map, taken, mean_m2](const vision::PixelPoint& pixel) -> Eigen::Vector2d {
+    return taken.variance_m2(map.jacobian_m_per_px(pixel)).cwiseQuotient(mean_m2).cwiseSqrt();
+  };
+}
+
 ResidualEstimate split_residuals(const PlaneMap& map, const FieldPoints& points,
                                  const StatedNoise& noise,
                                  const std::vector<PointResidual>& residuals) {
@@ -57,6 +70,10 @@ ResidualEstimate split_residuals(const PlaneMap& map, const FieldPoints& points,
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     fit.pixels.push_back(points.points[i].pixel);
     fit.error_m.row(static_cast<Eigen::Index>(i)) = residuals[i].error_m;
+  }
+  const bool is_noisy = noise.pixel_px.value_or(0.0) > 0.0 || noise.survey_m.value_or(0.0) > 0.0;
+  if (polynomial_order(map.kind()) == 0 && (is_noisy || !noise.is_stated())) {
+    fit.noise_scale = noise_scale(map, points, noise);
   }
   std::optional<Eigen::Vector2d> stated_m2;
   if (noise.is_stated()) stated_m2 = mean_variance_m2(point_covariances_m2(map, points, noise));
@@ -100,10 +117,9 @@ RadialMap weighted(const RadialMap& map, const FieldPoints& points,
   return RadialMap(p);
 }
 
+/// The map with its parameters' sampling error, for points with this mean variance.
 PlaneMap with_noise(const PlaneMap& map, const FieldPoints& points, const StatedNoise& noise,
-                    ResidualEstimate estimate) {
-  const double variance_m2 = estimate.noise_variance_m2.mean();
-  MapSupport support{std::move(estimate.lack_of_fit), pixel_hull(points)};
+                    double variance_m2, MapSupport support) {
   const auto covariances_m2 = point_covariances_m2(map, points, noise);
   return std::visit(
       [&](const auto& model) {
@@ -130,12 +146,20 @@ Eigen::Vector2d StatedNoise::variance_m2(const Eigen::Matrix2d& jacobian_m_per_p
   return covariance_m2(jacobian_m_per_px).diagonal();
 }
 
+PlaneMap fit_sampled_map(ModelKind model, const FieldPoints& points, const StatedNoise& noise,
+                         const FitOptions& options) {
+  const PlaneMap map = fit_map(model, points, options);
+  const double variance_m2 = mean_variance_m2(point_covariances_m2(map, points, noise)).mean();
+  return with_noise(map, points, noise, variance_m2, {LackOfFit(), pixel_hull(points)});
+}
+
 FieldFit fit_field(ModelKind model, const FieldPoints& points, const StatedNoise& noise,
                    const FitOptions& options) {
   const PlaneMap bare_map = fit_map(model, points, options);
   const std::vector<PointResidual> residuals = point_residuals(bare_map, points);
-  const PlaneMap map =
-      with_noise(bare_map, points, noise, split_residuals(bare_map, points, noise, residuals));
+  ResidualEstimate estimate = split_residuals(bare_map, points, noise, residuals);
+  const PlaneMap map = with_noise(bare_map, points, noise, estimate.noise_variance_m2.mean(),
+                                  {std::move(estimate.lack_of_fit), pixel_hull(points)});
 
   // 2 n - p of the 2 n residual components are free: that is what pure noise leaves on average.
   const auto count = static_cast<double>(points.points.size());

@@ -32,6 +32,11 @@ struct FieldFit {
   double explained_rms_m = 0.0;
 };
 
+/// fit_map with the sampling error that the stated noise leaves in the parameters, and nothing said
+/// of the model's own error: what the covariance would be if the model were right. Fast.
+PlaneMap fit_sampled_map(ModelKind model, const FieldPoints& points, const StatedNoise& noise,
+                         const FitOptions& options = {});
+
 /// Plain least squares fit (fit_map), and what its residuals say of its error.
 ///
 /// What is left is split into noise and the map's local lack of fit by estimate_residual_field. The

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "calibration/residual_places.h"
 
@@ -62,9 +63,8 @@ std::vector<double> lengths_px(const PixelBox& box, std::size_t places) {
   return lengths;
 }
 
-/// Of contrasts A (a column each) of one axis's errors.
-FieldModel field_model(const Places& places, const Eigen::VectorXd& error_m,
-                       const Eigen::MatrixXd& contrasts, double length_px) {
+/// Of contrasts A (a column each); their values are not known yet.
+FieldModel field_model(const Places& places, const Eigen::MatrixXd& contrasts, double length_px) {
   const Eigen::Index count = contrasts.rows();
   FieldModel model;
   model.length_px = length_px;
@@ -83,7 +83,6 @@ FieldModel field_model(const Places& places, const Eigen::VectorXd& error_m,
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(model.norm * reduced);
   model.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
   model.directions = solver.eigenvectors().transpose() * contrasts.transpose();
-  model.contrasts = model.directions * error_m;
   return model;
 }
 
@@ -145,20 +144,21 @@ struct Moments {
 /// One axis's residuals, what may explain them, and with which weight.
 class AxisField {
  public:
-  AxisField(const Places& places, const PixelBox& box, int axis,
-            const std::optional<double>& stated_m2)
-      : pixels_(places.pixels),
-        noise_share_(places.noise_share),
-        inverse_(pseudo_inverse(places.design[static_cast<std::size_t>(axis)])) {
-    const Eigen::VectorXd error_m = places.error_m.col(axis);
-    const Eigen::MatrixXd contrasts = contrast_basis(places.design[static_cast<std::size_t>(axis)]);
+  /// For errors of this design, which look_at tells.
+  AxisField(const Places& places, const PixelBox& box, const Eigen::MatrixXd& design)
+      : pixels_(places.pixels), noise_share_(places.noise_share), inverse_(pseudo_inverse(design)) {
+    const Eigen::MatrixXd contrasts = contrast_basis(design);
     for (const double length : lengths_px(box, pixels_.size())) {
-      models_.push_back(field_model(places, error_m, contrasts, length));
+      models_.push_back(field_model(places, contrasts, length));
     }
+  }
+
+  void look_at(const Eigen::VectorXd& error_m, const std::optional<double>& stated_m2) {
+    for (FieldModel& model : models_) model.contrasts = model.directions * error_m;
     // Points without any error leave a variance of 0, whose logarithm nobody wants.
-    const double residual_m2 = std::max(
-        (contrasts.transpose() * error_m).squaredNorm() / static_cast<double>(contrasts.cols()),
-        kLeast_m2);
+    const Eigen::VectorXd& contrasts_m = models_.front().contrasts;
+    const double residual_m2 =
+        std::max(contrasts_m.squaredNorm() / static_cast<double>(contrasts_m.size()), kLeast_m2);
     std::optional<double> stated_here_m2;
     if (stated_m2) stated_here_m2 = *stated_m2 * noise_share_;
     hypotheses_ = weigh(models_, residual_m2, stated_here_m2);
@@ -238,20 +238,32 @@ class ResidualField {
 
   LackOfFitNode at(const vision::PixelPoint& pixel) const {
     const Eigen::MatrixX2d phi = basis_(pixel);
-    const auto [x_m, x_m2] = axes_[0].at(pixel, phi.col(0));
-    const auto [y_m, y_m2] = axes_[1].at(pixel, phi.col(1));
-    return {{x_m, y_m}, {x_m2, y_m2}};
+    const Eigen::Vector2d scale = noise_scale_(pixel);
+    const auto [x_m, x_m2] = axes_[0].at(pixel, phi.col(0) / scale.x());
+    const auto [y_m, y_m2] = axes_[1].at(pixel, phi.col(1) / scale.y());
+    return {scale.cwiseProduct(Eigen::Vector2d(x_m, y_m)),
+            scale.cwiseAbs2().cwiseProduct(Eigen::Vector2d(x_m2, y_m2))};
   }
 
  private:
   ResidualField(const FitResiduals& fit, const Places& places,
                 const std::optional<Eigen::Vector2d>& stated_m2)
-      : basis_(fit.basis),
-        axes_{AxisField(places, fit.box, 0, of_axis(stated_m2, 0)),
-              AxisField(places, fit.box, 1, of_axis(stated_m2, 1))} {}
+      : basis_(fit.basis), noise_scale_(fit.noise_scale) {
+    axes_.emplace_back(places, fit.box, places.design[0]);
+    if (places.design[0] == places.design[1]) {  // the costly part is the same
+      axes_.push_back(axes_.front());
+    } else {
+      axes_.emplace_back(places, fit.box, places.design[1]);
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      axes_[static_cast<std::size_t>(axis)].look_at(places.error_m.col(axis),
+                                                    of_axis(stated_m2, axis));
+    }
+  }
 
   std::function<Eigen::MatrixX2d(const vision::PixelPoint&)> basis_;
-  std::array<AxisField, 2> axes_;
+  std::function<Eigen::Vector2d(const vision::PixelPoint&)> noise_scale_;
+  std::vector<AxisField> axes_;  ///< x, y
 };
 
 vision::PixelPoint grid_pixel(const PixelBox& box, double column, double row) {
@@ -296,7 +308,12 @@ ResidualEstimate estimate_residual_field(const FitResiduals& fit,
   add_grid_error(fit.box, field, &nodes);
   const Eigen::Vector2d noise_m2 = stated_variance_m2.value_or(field.noise_variance_m2());
   if (!stated_variance_m2) {
-    for (LackOfFitNode& node : nodes) node.variance_m2 += noise_m2;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const auto row = static_cast<int>(i) / kColumns;
+      const auto column = static_cast<int>(i) % kColumns;
+      const Eigen::Vector2d scale = fit.noise_scale(grid_pixel(fit.box, column, row));
+      nodes[i].variance_m2 += noise_m2.cwiseProduct(scale.cwiseAbs2());
+    }
   }
   return {LackOfFit(fit.box, kColumns, kRows, std::move(nodes)), noise_m2};
 }

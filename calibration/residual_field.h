@@ -18,6 +18,10 @@ struct FitResiduals {
   Eigen::MatrixX2d error_m;                ///< n x 2, surveyed minus mapped place
   /// phi of the fit at a pixel, a column an axis: the derivatives of x, of y by the parameters.
   std::function<Eigen::MatrixX2d(const vision::PixelPoint&)> basis;
+  /// Standard deviation of a point's noise at a pixel against the root of the mean variance, per
+  /// axis. Errors and basis are divided by it, so that all points have the same noise.
+  std::function<Eigen::Vector2d(const vision::PixelPoint&)> noise_scale =
+      [](const vision::PixelPoint&) { return Eigen::Vector2d::Ones().eval(); };
 };
 
 struct ResidualEstimate {

@@ -62,9 +62,10 @@ Places places_of(const FitResiduals& fit) {
   Eigen::VectorXd points = Eigen::VectorXd::Zero(rows);
   for (std::size_t i = 0; i < fit.pixels.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(number[i]);
-    const Eigen::MatrixX2d phi = fit.basis(fit.pixels[i]);
+    const Eigen::RowVector2d scale = fit.noise_scale(fit.pixels[i]);
+    const Eigen::MatrixX2d phi = fit.basis(fit.pixels[i]).array().rowwise() / scale.array();
     places.pixels[number[i]] += fit.pixels[i];
-    places.error_m.row(row) += fit.error_m.row(static_cast<Eigen::Index>(i));
+    places.error_m.row(row) += fit.error_m.row(static_cast<Eigen::Index>(i)).cwiseQuotient(scale);
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
       places.design[static_cast<std::size_t>(axis)].row(row) += phi.col(axis);
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calibration/calibration_height.h"
 #include "vision/input/input_error.h"
 #include "vision/pixel_scale_grid.h"
 
@@ -47,11 +48,12 @@ CameraPipeline::CameraPipeline(PipelineSetup setup, int width_px, int height_px)
     : setup_(std::move(setup)), width_px_(width_px), height_px_(height_px), tracks_(setup_.tracks) {
   calibration::check_image_size(setup_.calibration, setup_.calibration_file, width_px, height_px);
   check_team_names(setup_.layouts);
-  const vision::PixelScaleGrid scale(width_px, height_px, [this](const vision::PixelPoint& pixel) {
-    return map().jacobian_m_per_px(pixel);
-  });
   int kinds = 0;
   for (const vision::MarkerLayout& layout : setup_.layouts) {
+    maps_.push_back(calibration::map_at_height(setup_.calibration, layout.height_m));
+    const vision::PixelScaleGrid scale(
+        width_px, height_px,
+        [this](const vision::PixelPoint& pixel) { return maps_.back().jacobian_m_per_px(pixel); });
     eyes_.push_back({vision::DiscPatternDetector(layout, scale, setup_.colours), {}, kinds});
     kinds += static_cast<int>(layout.teams.size());
   }
@@ -101,23 +103,24 @@ void CameraPipeline::locate(FrameReport& report) {
   DiscCovariances covariances_m2;
   for (std::size_t i = 0; i < eyes_.size(); ++i) {
     for (const vision::RobotObservation& robot : eyes_[i].seen.robots) {
-      if (!measure_discs(robot, covariances_m2)) {
+      if (!measure_discs(robot, map(i), covariances_m2)) {
         report.rejected.push_back(
             {robot.discs[0].centre_px, "a disc has too few pixels to be measured"});
         continue;
       }
       sightings_.push_back(
-          {i, &robot, pose_from_markers(robot, setup_.layouts[i], map(), covariances_m2), false});
+          {i, &robot, pose_from_markers(robot, setup_.layouts[i], map(i), covariances_m2), false});
     }
   }
 }
 
 // False if the variance law does not take one of the discs for a measurement.
 bool CameraPipeline::measure_discs(const vision::RobotObservation& robot,
+                                   const calibration::PlaneMap& map,
                                    DiscCovariances& covariances_m2) const {
   for (std::size_t d = 0; d < static_cast<std::size_t>(robot.disc_count); ++d) {
     const vision::DiscObservation& disc = robot.discs[d];
-    const Eigen::Matrix2d jacobian = map().jacobian_m_per_px(disc.centre_px);
+    const Eigen::Matrix2d jacobian = map.jacobian_m_per_px(disc.centre_px);
     const auto covariance_m2 = setup_.variance.covariance_m2(disc, jacobian);
     if (!covariance_m2) return false;
     covariances_m2[d] = *covariance_m2;

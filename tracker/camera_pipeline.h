@@ -61,17 +61,20 @@ class CameraPipeline {
   void check_size(const vision::Frame& frame) const;
   void detect(const vision::Frame& frame);
   void locate(FrameReport& report);
-  bool measure_discs(const vision::RobotObservation& robot, DiscCovariances& covariances_m2) const;
+  bool measure_discs(const vision::RobotObservation& robot, const calibration::PlaneMap& map,
+                     DiscCovariances& covariances_m2) const;
   void settle_shared_discs(FrameReport& report);
   void identify(vision::CaptureTime capture_time, FrameReport& report);
   void report_rejected(FrameReport& report) const;
   RobotReport robot_report(const Sighting& sighting, int id) const;
 
-  const calibration::PlaneMap& map() const { return setup_.calibration.map; }
+  // Of the plane of a layout's markers.
+  const calibration::PlaneMap& map(std::size_t layout) const { return maps_[layout]; }
 
   PipelineSetup setup_;
   int width_px_;
   int height_px_;
+  std::vector<calibration::PlaneMap> maps_;  // of each layout
   std::vector<Eye> eyes_;
   RobotTracks tracks_;
   std::vector<Sighting> sightings_;

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "calibration/calibration_height.h"
 #include "tracker/wire/wire_types.h"
 #include "vision/colour_file.h"
 #include "vision/input/input_error.h"
@@ -48,16 +47,16 @@ PipelineSetup load_pipeline_setup(const CameraConfig& config, const TrackSetting
 }
 
 std::vector<std::string> setup_warnings(const PipelineSetup& setup) {
-  constexpr double kSameHeight_m = 0.001;
   std::vector<std::string> warnings;
   for (const vision::MarkerLayout& layout : setup.layouts) {
-    if (std::abs(layout.height_m - setup.calibration.height_m) <= kSameHeight_m) continue;
-    warnings.push_back(
-        fmt::format("{}: warning: the markers of layout '{}' are {:g} m high, but {} was made for "
-                    "{:g} m; positions are "
-                    "off towards the image border; calibrate with points at the markers' height",
-                    setup.camera, layout.name, layout.height_m, setup.calibration_file.string(),
-                    setup.calibration.height_m));
+    if (calibration::is_corrected_at_height(setup.calibration, layout.height_m)) continue;
+    warnings.push_back(fmt::format(
+        "{}: warning: the markers of layout '{}' are {:g} m high, but {} was made for {:g} m and "
+        "does not know where the camera is; positions are off towards the image border, and their "
+        "covariance says so; calibrate at the markers' height, or with --camera-height and "
+        "--nadir, --focal-px or points at a second height",
+        setup.camera, layout.name, layout.height_m, setup.calibration_file.string(),
+        setup.calibration.height_m));
   }
   return warnings;
 }
