@@ -65,10 +65,15 @@ Line weighted_fit(std::span<const Point> points, const Line& before, double smal
 
 Line fit(std::span<const Point> points, double relative_variance) {
   double mean = 0.0;
-  for (const Point& point : points) mean += point.variance / static_cast<double>(points.size());
+  double mean_acceleration2 = 0.0;
+  for (const Point& point : points) {
+    mean += point.variance / static_cast<double>(points.size());
+    mean_acceleration2 += point.acceleration2 / static_cast<double>(points.size());
+  }
   // Without errors there is nothing to weigh by.
   if (mean <= 0.0) return {};
-  Line line{mean, 0.0, 0.0, 0.0};
+  // Equal weights would leave the start to the few largest errors.
+  Line line{0.5 * mean, 0.5 * mean / mean_acceleration2, 0.0, 0.0};
   constexpr int kRounds = 6;
   for (int i = 0; i < kRounds; ++i) {
     line = weighted_fit(points, line, 1e-3 * mean, relative_variance);
