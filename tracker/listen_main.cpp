@@ -1,4 +1,4 @@
-// nadir-listen: prints what a tracker publishes.
+// nadir-listen: prints what trackers and clients publish.
 
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -11,13 +11,18 @@
 #include "tracker/listen_silence.h"
 #include "tracker/listen_text.h"
 #include "tracker/wire/pose_reader.h"
+#include "tracker/wire/value_streams.h"
 #include "vision/input/usage_line.h"
 
 namespace {
 
+using nadir::tracker::ClientStateReader;
 using nadir::tracker::FrameReader;
+using nadir::tracker::Participant;
 using nadir::tracker::PoseReader;
 using nadir::tracker::ReaderOptions;
+using nadir::tracker::Speaker;
+using nadir::tracker::WireClientState;
 using nadir::tracker::WireFrame;
 using nadir::tracker::WirePose;
 using SteadyClock = std::chrono::steady_clock;
@@ -28,6 +33,7 @@ struct Options {
   ReaderOptions reader;
   bool json = false;
   bool frames = false;
+  bool clients = false;
   std::uint64_t count = 0;  ///< 0: without end
 };
 
@@ -45,11 +51,17 @@ std::string line(const WireFrame& frame, bool json) {
   return json ? nadir::tracker::frame_json(frame, now_ns())
               : nadir::tracker::frame_columns(frame, now_ns());
 }
+std::string line(const WireClientState& state, bool json) {
+  return json ? nadir::tracker::client_json(state, now_ns())
+              : nadir::tracker::client_columns(state, now_ns());
+}
 
 /// Says why nothing is printed: first after 3 s of silence, then at a slow rate.
 class SilenceWatch {
  public:
-  explicit SilenceWatch(const ReaderOptions& options) : options_(options) {}
+  explicit SilenceWatch(const Options& options)
+      : options_(options.reader),
+        speaker_(options.clients ? Speaker::kClient : Speaker::kTracker) {}
 
   void printed() {
     last_print_ = SteadyClock::now();
@@ -62,23 +74,23 @@ class SilenceWatch {
     if (now < next_words_) return;
     next_words_ = now + std::chrono::seconds(15);
     const double silent_s = std::chrono::duration<double>(now - last_print_).count();
-    const std::string words = nadir::tracker::explain_silence(options_, reader.status(), silent_s,
-                                                              nadir::tracker::network_interfaces(),
-                                                              std::getenv("CYCLONEDDS_URI"));
+    const std::string words = nadir::tracker::explain_silence(
+        options_, speaker_, reader.status(), silent_s, nadir::tracker::network_interfaces(),
+        std::getenv("CYCLONEDDS_URI"));
     std::fprintf(stderr, "nadir-listen: %s\n", words.c_str());
   }
 
  private:
   const ReaderOptions& options_;
+  Speaker speaker_;
   SteadyClock::time_point last_print_ = SteadyClock::now();
   SteadyClock::time_point next_words_ = last_print_ + std::chrono::seconds(3);
 };
 
 /// Prints until interrupted, until `count` lines are out, or until nobody reads them (false).
-template <typename Reader, typename Value>
-bool listen(const Options& options) {
-  Reader reader(options.reader);
-  SilenceWatch silence(options.reader);
+template <typename Value, typename Reader>
+bool listen(const Options& options, Reader reader) {
+  SilenceWatch silence(options);
   Value value;
   std::uint64_t lines = 0;
   while (stop_requested == 0 && (options.count == 0 || lines < options.count)) {
@@ -98,6 +110,24 @@ bool listen(const Options& options) {
   return true;
 }
 
+bool listen(const Options& options) {
+  const Participant participant(options.reader.wire);
+  if (options.frames) return listen<WireFrame>(options, FrameReader(participant, options.reader));
+  if (options.clients) {
+    const nadir::tracker::PoseFilter& wanted = options.reader.filter;
+    return listen<WireClientState>(
+        options,
+        ClientStateReader(participant, {wanted.robot, wanted.team}, options.reader.queue_capacity));
+  }
+  return listen<WirePose>(options, PoseReader(participant, options.reader));
+}
+
+std::string header(const Options& options) {
+  if (options.frames) return nadir::tracker::frame_columns_header();
+  if (options.clients) return nadir::tracker::client_columns_header();
+  return nadir::tracker::pose_columns_header();
+}
+
 void describe_options(CLI::App* app, Options* options) {
   ReaderOptions& reader = options->reader;
   app->failure_message(nadir::vision::usage_line);
@@ -114,6 +144,10 @@ void describe_options(CLI::App* app, Options* options) {
   app->add_flag("--frames", options->frames, "whole frames, also empty ones, instead of poses")
       ->excludes(robot)
       ->excludes(team);
+  app->add_flag("--clients", options->clients,
+                "what the robots' clients say of themselves, instead of poses")
+      ->excludes("--frames")
+      ->excludes("--camera");
   app->add_option("--count", options->count, "end after this many lines")
       ->check(CLI::PositiveNumber);
 }
@@ -129,8 +163,10 @@ void stop_on_interrupt() {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Prints poses as they are published: pose, 1-sigma, covariance and age.",
-               "nadir-listen");
+  CLI::App app(
+      "Prints poses as they are published (pose, 1-sigma, covariance and age), or frames, or "
+      "the states of clients.",
+      "nadir-listen");
   describe_options(&app, &options);
   try {
     app.parse(argc, argv);
@@ -140,13 +176,9 @@ int main(int argc, char** argv) {
   stop_on_interrupt();
   try {
     if (!options.json) {
-      const std::string header = options.frames ? nadir::tracker::frame_columns_header()
-                                                : nadir::tracker::pose_columns_header();
-      std::fprintf(stderr, "%s\n", header.c_str());
+      std::fprintf(stderr, "%s\n", header(options).c_str());
     }
-    const bool done = options.frames ? listen<FrameReader, WireFrame>(options)
-                                     : listen<PoseReader, WirePose>(options);
-    return done ? 0 : 1;
+    return listen(options) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "nadir-listen: %s\n", error.what());
     return 1;

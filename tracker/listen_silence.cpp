@@ -20,31 +20,54 @@ std::string describe(const PoseFilter& filter) {
   return text;
 }
 
-std::string most_likely_reason(const ReaderOptions& options, const ReaderStatus& status) {
+/// What there is to say of the one speaker and not of the other.
+struct Words {
+  std::string who;
+  std::string program;
+  std::string nothing_said;
+};
+
+Words words_of(Speaker speaker, const std::string& filter) {
+  if (speaker == Speaker::kClient) {
+    return {"client", "nadir-client drive",
+            filter.empty()
+                ? "a client is connected but has not said anything yet"
+                : "a client is connected, but it is not that of" + filter + ": try without"};
+  }
+  return {"tracker", "nadir-tracker",
+          filter.empty() ? "a tracker is connected but sees no robot: look at its overlay, or "
+                           "here with --frames"
+                         : "a tracker is connected but no pose passes" + filter + ": try without"};
+}
+
+std::string most_likely_reason(const ReaderOptions& options, Speaker speaker,
+                               const ReaderStatus& status) {
+  const Words words = words_of(speaker, describe(options.filter));
   if (status.malformed > 0) {
-    return "samples arrive but hold impossible numbers: are tracker and listener of the same "
-           "version?";
+    return fmt::format(
+        "samples arrive but hold impossible numbers: are {} and listener of the same version?",
+        words.who);
   }
   if (status.alive_writers > 0) {
-    const std::string filter = describe(options.filter);
-    return filter.empty() ? "a tracker is connected but sees no robot: look at its overlay, or "
-                            "here with --frames"
-                          : "a tracker is connected but no pose passes" + filter + ": try without";
+    return words.nothing_said;
   }
   if (status.matched_writers > 0) {
-    return "a tracker was connected and fell silent: has it stopped, or is the network cut?";
+    return fmt::format("a {} was connected and fell silent: has it stopped, or is the network cut?",
+                       words.who);
   }
   if (status.peers > 0) {
-    return "others are in this domain, but none of them publishes poses: is nadir-tracker running, "
-           "without "
-           "--no-publish and of the same version?";
+    const bool poses = speaker == Speaker::kTracker;
+    return fmt::format(
+        "others are in this domain, but none of them {}: is {} running, {}of the same version?",
+        poses ? "publishes poses" : "is a client", words.program,
+        poses ? "without --no-publish and " : "and ");
   }
   return fmt::format(
-      "nobody else is in this domain: start nadir-tracker with --domain {}; on another machine, "
+      "nobody else is in this domain: start {} with --domain {}; on another machine, "
       "let UDP "
       "multicast (239.255.0.1) and ports {} to {} pass, or name the machines as peers in "
       "CYCLONEDDS_URI",
-      options.wire.domain, 7400 + 250 * options.wire.domain,
+      words.program, options.wire.domain, 7400 + 250 * options.wire.domain,
       7400 + 250 * options.wire.domain + 249);
 }
 
@@ -68,8 +91,9 @@ std::string network_interfaces() {
   return text.empty() ? "none" : text;
 }
 
-std::string explain_silence(const ReaderOptions& options, const ReaderStatus& status,
-                            double silent_s, const std::string& interfaces, const char* uri) {
+std::string explain_silence(const ReaderOptions& options, Speaker speaker,
+                            const ReaderStatus& status, double silent_s,
+                            const std::string& interfaces, const char* uri) {
   const bool configured = uri != nullptr && *uri != '\0';
   return fmt::format(
       "nothing to print for {:.0f} s on DDS domain {}\n"
@@ -79,7 +103,7 @@ std::string explain_silence(const ReaderOptions& options, const ReaderStatus& st
       "  {}",
       silent_s, options.wire.domain, status.matched_writers, status.alive_writers, status.peers,
       interfaces, configured ? uri : "not set, Cyclone DDS takes the interface it finds best",
-      most_likely_reason(options, status));
+      most_likely_reason(options, speaker, status));
 }
 
 }  // namespace nadir::tracker

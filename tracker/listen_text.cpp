@@ -19,11 +19,19 @@ std::string one_line(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json robot_json(const WireRobot& robot) {
-  Json covariance = Json::array();
+Json covariance_json(const fusion::PoseCovariance& covariance) {
+  Json numbers = Json::array();
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) covariance.push_back(robot.covariance(row, column));
+    for (int column = 0; column < 3; ++column) numbers.push_back(covariance(row, column));
   }
+  return numbers;
+}
+
+Json pose_numbers(const fusion::PlanarPose& pose) {
+  return {{"x_m", pose.x_m}, {"y_m", pose.y_m}, {"heading_rad", pose.heading_rad}};
+}
+
+Json robot_json(const WireRobot& robot) {
   Json pixels = Json::array();
   for (std::size_t i = 0; i < robot.marker_count; ++i) pixels.push_back(robot.pixels[i]);
   return {{"id", robot.robot},
@@ -31,7 +39,7 @@ Json robot_json(const WireRobot& robot) {
           {"x_m", robot.pose_world_robot.x_m},
           {"y_m", robot.pose_world_robot.y_m},
           {"heading_rad", robot.pose_world_robot.heading_rad},
-          {"covariance", covariance},
+          {"covariance", covariance_json(robot.covariance)},
           {"u_px", robot.u_px},
           {"v_px", robot.v_px},
           {"pixels", pixels},
@@ -100,6 +108,61 @@ std::string frame_json(const WireFrame& frame, std::int64_t now_ns) {
                        {"total", frame.stages.total_us}}},
                      {"robots", robots},
                      {"rejected", frame.rejected}};
+  return one_line(json);
+}
+
+std::string client_columns_header() {
+  return fmt::format(
+      "{:<8} {:>4} {:<10} {:<15} | {:>8} {:>8} {:>8} | {:>8} {:>8} {:>9} | {:>7} {:>6} {:>5} {:>5} "
+      "{:>5} | {:>8} {:>7} {:>9} {:>8} | {}",
+      "team", "id", "mode", "reason", "x_m", "y_m", "head_rad", "ahead_mm", "left_mm", "head_mrad",
+      "pose_ms", "accept", "rejec", "late", "lost", "ticks", "missed", "clock_ms", "sigma_ms",
+      "text");
+}
+
+std::string client_columns(const WireClientState& state, std::int64_t /*now_ns*/) {
+  const fusion::PlanarPose& pose = state.estimate_world_robot;
+  const WireClientCounts& counts = state.counts;
+  return fmt::format(
+      "{:<8} {:>4} {:<10} {:<15} | {:>8.4f} {:>8.4f} {:>8.4f} | {:>8.2f} {:>8.2f} {:>9.2f} | "
+      "{:>7.1f} {:>6} {:>5} {:>5} {:>5} | {:>8} {:>7} {:>9.3f} {:>8.3f} | {}",
+      state.team, state.robot, name_of(state.mode), name_of(state.reason), pose.x_m, pose.y_m,
+      pose.heading_rad, 1e3 * state.error_ahead_m, 1e3 * state.error_left_m,
+      1e3 * state.error_heading_rad, 1e-6 * static_cast<double>(state.pose_age_ns),
+      counts.poses_accepted, counts.poses_rejected, counts.poses_late, counts.poses_lost,
+      counts.ticks, counts.ticks_missed, 1e-6 * static_cast<double>(state.clock_offset_ns),
+      1e-6 * static_cast<double>(state.clock_sigma_ns), state.text);
+}
+
+std::string client_json(const WireClientState& state, std::int64_t now_ns) {
+  const WireClientCounts& counts = state.counts;
+  const Json json = {{"id", state.robot},
+                     {"team", state.team},
+                     {"epoch", state.epoch},
+                     {"sequence", state.sequence},
+                     {"stamp_ns", state.stamp_ns},
+                     {"age_ms", age_ms(state.stamp_ns, now_ns)},
+                     {"mode", name_of(state.mode)},
+                     {"reason", name_of(state.reason)},
+                     {"text", state.text},
+                     {"estimate", pose_numbers(state.estimate_world_robot)},
+                     {"covariance", covariance_json(state.covariance)},
+                     {"nominal", pose_numbers(state.nominal_world_robot)},
+                     {"error_ahead_m", state.error_ahead_m},
+                     {"error_left_m", state.error_left_m},
+                     {"error_heading_rad", state.error_heading_rad},
+                     {"pose_age_ns", state.pose_age_ns},
+                     {"poses",
+                      {{"accepted", counts.poses_accepted},
+                       {"rejected", counts.poses_rejected},
+                       {"late", counts.poses_late},
+                       {"lost", counts.poses_lost}}},
+                     {"recoveries", counts.recoveries},
+                     {"odometry_samples", counts.odometry_samples},
+                     {"ticks", counts.ticks},
+                     {"ticks_missed", counts.ticks_missed},
+                     {"clock_offset_ns", state.clock_offset_ns},
+                     {"clock_sigma_ns", state.clock_sigma_ns}};
   return one_line(json);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "tracker/wire/client_state.h"
 #include "tracker/wire/wire_types.h"
 
 namespace nadir::tracker {
@@ -22,5 +23,12 @@ std::string frame_columns_header();
 std::string frame_columns(const WireFrame& frame, std::int64_t now_ns);
 /// One JSON object like a line of the poses file; `rejected` is the number of rejected candidates.
 std::string frame_json(const WireFrame& frame, std::int64_t now_ns);
+
+std::string client_columns_header();
+/// Mode, reason, estimate, its error to the trajectory in mm and mrad, counts, clock and text, in
+/// columns.
+std::string client_columns(const WireClientState& state, std::int64_t now_ns);
+/// One JSON object with every field of the state, and age_ms (wrong by the client's clock).
+std::string client_json(const WireClientState& state, std::int64_t now_ns);
 
 }  // namespace nadir::tracker

@@ -48,8 +48,8 @@ void fill_frame(const FrameReport& report, std::uint64_t epoch, WireFrame* frame
     fill_robot(report.robots[i], &frame->robots[i]);
 }
 
-Publisher::Publisher(const WireOptions& options, std::uint64_t epoch)
-    : epoch_(epoch), writer_(options) {}
+Publisher::Publisher(const Participant& participant, std::uint64_t epoch)
+    : epoch_(epoch), writer_(participant) {}
 
 void Publisher::publish(const FrameReport& report) {
   const std::lock_guard lock(mutex_);

@@ -22,7 +22,7 @@ class Publisher {
  public:
   /// `epoch` tells one run of the tracker from the next: its start, ns since the Unix epoch.
   /// Throws WireError if DDS refuses.
-  Publisher(const WireOptions& options, std::uint64_t epoch);
+  Publisher(const Participant& participant, std::uint64_t epoch);
 
   void publish(const FrameReport& report);
   PoseWriter::Status status() const;

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "tracker/camera_setup.h"
+#include "tracker/simulated_robots.h"
 #include "vision/sources/open_source.h"
 
 namespace nadir::tracker {
@@ -17,12 +18,6 @@ namespace {
 constexpr std::size_t kQueueLength = 8;
 constexpr std::chrono::milliseconds kPollInterval{50};
 constexpr std::chrono::milliseconds kDiscoveryTime{400};
-
-std::int64_t wall_clock_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 
@@ -40,22 +35,40 @@ TrackerServer::TrackerServer(const TrackerConfig& config, Console& console)
     for (const std::string& warning : setup_warnings(setups.back())) console_.line(warning);
   }
   if (config_.publish) {
-    publisher_.emplace(WireOptions{static_cast<std::uint32_t>(config_.domain), config_.partition},
-                       static_cast<std::uint64_t>(wall_clock_ns()));
+    const auto epoch = static_cast<std::uint64_t>(system_clock_ns());
+    publisher_.emplace(participant(), epoch);
+    clock_answerer_.emplace(participant(), epoch);
     shared.publisher = &*publisher_;
   }
   for (std::size_t i = 0; i < setups.size(); ++i) {
     if (draws) overlays_.emplace_back(setups[i].calibration.map, setups[i].layouts);
-    vision::SourceOptions options;
-    options.rate_hz = config_.cameras[i].rate_hz;
-    cameras_.push_back(std::make_unique<CameraThread>(
-        i, vision::open_source(config_.cameras[i].source, options), std::move(setups[i]), shared));
+    cameras_.push_back(std::make_unique<CameraThread>(i, open_source(config_.cameras[i]),
+                                                      std::move(setups[i]), shared));
   }
   if (draws) std::filesystem::create_directories(config_.overlay);
   if (!config_.poses.empty()) log_.emplace(config_.poses);
 }
 
 TrackerServer::~TrackerServer() = default;
+
+const Participant& TrackerServer::participant() {
+  if (!participant_) {
+    participant_.emplace(
+        WireOptions{static_cast<std::uint32_t>(config_.domain), config_.partition});
+  }
+  return *participant_;
+}
+
+std::unique_ptr<vision::FrameSource> TrackerServer::open_source(const CameraConfig& camera) {
+  vision::SourceOptions options;
+  options.rate_hz = camera.rate_hz;
+  options.live_robots = [this](double hold_s) {
+    const auto hold =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(hold_s));
+    return std::make_shared<SimulatedRobots>(participant(), hold, console_);
+  };
+  return vision::open_source(camera.source, options);
+}
 
 // A recording is over soon: a listener that is there already should not miss its beginning only
 // because the two processes have yet to discover each other. Without a listener nothing waits for
@@ -140,6 +153,10 @@ int TrackerServer::finish(bool stopped) {
         fmt::format("published {} poses and {} frames on domain {}; {} refused, {} failed",
                     status.published_poses, status.published_frames, config_.domain, status.refused,
                     status.failed));
+  }
+  if (clock_answerer_ && clock_answerer_->status().answered > 0) {
+    console_.line(
+        fmt::format("answered {} questions about this clock", clock_answerer_->status().answered));
   }
   if (queue_.dropped() > 0) {
     console_.line(fmt::format(

@@ -9,6 +9,8 @@
 #include "tracker/overlay.h"
 #include "tracker/pose_log.h"
 #include "tracker/tracker_config.h"
+#include "tracker/wire/clock_exchange.h"
+#include "tracker/wire/participant.h"
 
 namespace nadir::tracker {
 
@@ -26,6 +28,8 @@ class TrackerServer {
   int run(const std::atomic<bool>& stop);
 
  private:
+  const Participant& participant();
+  std::unique_ptr<vision::FrameSource> open_source(const CameraConfig& camera);
   void wait_for_listener() const;
   void consume(const std::atomic<bool>& stop);
   bool all_done() const;
@@ -37,7 +41,9 @@ class TrackerServer {
   TrackerConfig config_;
   Console& console_;
   ReportQueue queue_;
+  std::optional<Participant> participant_;  // nothing while nobody needs the network
   std::optional<Publisher> publisher_;
+  std::optional<ClockAnswerer> clock_answerer_;
   std::optional<PoseLog> log_;
   std::vector<Overlay> overlays_;
   std::vector<std::unique_ptr<CameraThread>> cameras_;  // last: their threads use all the others

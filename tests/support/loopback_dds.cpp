@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <random>
 
@@ -15,9 +16,15 @@ std::string unique_tag() {
          std::to_string(std::random_device()());
 }
 
+std::string lossy(double loss) {
+  if (loss <= 0.0) return "";
+  return "<Internal><Test><XmitLossiness>" + std::to_string(std::lround(1000.0 * loss)) +
+         "</XmitLossiness></Test></Internal>";
+}
+
 }  // namespace
 
-LoopbackDds::LoopbackDds()
+LoopbackDds::LoopbackDds(double loss)
     // Spreads the ports: each domain has its own. 101 is the last one below the ephemeral ports.
     : domain_(static_cast<std::uint32_t>(getpid()) % 102),
       // No multicast: the tag and the one peer are the whole network. The default of 9 participants
@@ -29,7 +36,8 @@ LoopbackDds::LoopbackDds()
           unique_tag() +
           "</Tag><ParticipantIndex>auto</ParticipantIndex>"
           "<MaxAutoParticipantIndex>99</MaxAutoParticipantIndex>"
-          "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>") {
+          "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>" +
+          lossy(loss) + "</Domain></CycloneDDS>") {
   setenv("CYCLONEDDS_URI", uri_.c_str(), 1);
 }
 

@@ -11,7 +11,8 @@ namespace nadir::test {
 /// environment().
 class LoopbackDds {
  public:
-  LoopbackDds();
+  /// loss: share of packets that never leave this process or a child, 0 to 1.
+  explicit LoopbackDds(double loss = 0.0);
   LoopbackDds(const LoopbackDds&) = delete;
   LoopbackDds& operator=(const LoopbackDds&) = delete;
   ~LoopbackDds();

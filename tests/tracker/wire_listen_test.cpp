@@ -12,6 +12,7 @@
 #include "tests/support/child_process.h"
 #include "tests/support/loopback_dds.h"
 #include "tests/support/test_poses.h"
+#include "tests/support/test_values.h"
 
 namespace nadir::tracker {
 namespace {
@@ -139,6 +140,61 @@ TEST_F(Listen, FramesShowAlsoEmptyOnes) {
   EXPECT_TRUE(empty_seen);
 }
 
+TEST_F(Listen, ClientsAsJsonAreWhatTheySaid) {
+  ChildProcess listener = listen({"--clients", "--json", "--robot", "1", "--count", "30"});
+  ChildProcess sender = start(NADIR_TEST_PEER, {"state"});
+  ASSERT_EQ(listener.wait(kPatience), 0) << listener.err();
+  const std::vector<std::string> printed = lines(listener.out());
+  ASSERT_EQ(printed.size(), 30U);
+  for (const std::string& line : printed) {
+    const json fields = json::parse(line);
+    const WireClientState sent = test::test_state(fields.at("sequence"), 1);
+    EXPECT_EQ(fields.at("id"), 1);
+    EXPECT_EQ(fields.at("team"), sent.team);
+    EXPECT_EQ(fields.at("mode"), name_of(sent.mode));
+    EXPECT_EQ(fields.at("reason"), name_of(sent.reason));
+    EXPECT_EQ(fields.at("text"), sent.text);
+    EXPECT_EQ(fields.at("estimate").at("heading_rad"), sent.estimate_world_robot.heading_rad);
+    EXPECT_EQ(fields.at("nominal").at("x_m"), sent.nominal_world_robot.x_m);
+    EXPECT_EQ(fields.at("covariance").at(5), sent.covariance(1, 2));
+    EXPECT_EQ(fields.at("error_left_m"), sent.error_left_m);
+    EXPECT_EQ(fields.at("pose_age_ns"), sent.pose_age_ns);
+    EXPECT_EQ(fields.at("poses").at("lost"), sent.counts.poses_lost);
+    EXPECT_EQ(fields.at("ticks_missed"), sent.counts.ticks_missed);
+    EXPECT_EQ(fields.at("clock_offset_ns"), sent.clock_offset_ns);
+  }
+}
+
+TEST_F(Listen, ClientsInColumnsShowModeEstimateAndError) {
+  ChildProcess listener = listen({"--clients", "--count", "5"});
+  ChildProcess sender = start(NADIR_TEST_PEER, {"state", "--robots", "1"});
+  ASSERT_EQ(listener.wait(kPatience), 0) << listener.err();
+  EXPECT_NE(listener.err().find("missed"), std::string::npos);  // the header
+  for (const std::string& line : lines(listener.out())) {
+    const std::size_t place = line.find("| state ");  // the text names the sequence number
+    ASSERT_NE(place, std::string::npos) << line;
+    const WireClientState sent = test::test_state(std::stoull(line.substr(place + 8)), 0);
+    EXPECT_EQ(line.find("blue        0 " + std::string(name_of(sent.mode))), 0U) << line;
+    EXPECT_NE(line.find(name_of(sent.reason)), std::string::npos) << line;
+    std::istringstream stream(line.substr(line.find('|') + 1));
+    std::string bar;
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double heading_rad = 0.0;
+    double ahead_mm = 0.0;
+    stream >> x_m >> y_m >> heading_rad >> bar >> ahead_mm;
+    ASSERT_TRUE(stream) << line;
+    EXPECT_NEAR(x_m, sent.estimate_world_robot.x_m, 5.1e-5);
+    EXPECT_NEAR(ahead_mm, 1e3 * sent.error_ahead_m, 5.1e-3);
+  }
+}
+
+TEST_F(Listen, SaysWhyNoClientIsHeard) {
+  ChildProcess sender = publisher({});
+  ChildProcess listener = listen({"--clients"});
+  EXPECT_TRUE(listener.wait_for_err("is nadir-client drive running", kPatience)) << listener.err();
+}
+
 TEST_F(Listen, SaysWhyNothingComes) {
   ChildProcess listener = listen({});
   ASSERT_TRUE(listener.wait_for_err("nobody else is in this domain", kPatience)) << listener.err();
@@ -181,7 +237,8 @@ TEST_F(Listen, WrongUsageEndsWithTwo) {
                                                        {"--domain", "x"},
                                                        {"--count", "0"},
                                                        {"--no-such-option"},
-                                                       {"--frames", "--robot", "1"}};
+                                                       {"--frames", "--robot", "1"},
+                                                       {"--clients", "--frames"}};
   for (const std::vector<std::string>& arguments : wrong) {
     ChildProcess listener(NADIR_LISTEN, arguments, dds_.environment());
     EXPECT_EQ(listener.wait(kPatience), 2) << arguments[0];

@@ -28,6 +28,8 @@ constexpr seconds kPatience{30};  // for what takes milliseconds on an idle mach
 
 class ValueStream : public testing::Test {
  protected:
+  explicit ValueStream(double loss = 0.0) : dds_(loss) {}
+
   ChildProcess peer(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"--domain", std::to_string(dds_.domain())});
     return {NADIR_TEST_PEER, arguments, dds_.environment()};
@@ -192,6 +194,35 @@ TEST_F(ValueStream, OneProcessIsOneParticipantWhateverItReadsAndWrites) {
   const ClientStateReader reader(monitor);
   ASSERT_TRUE(becomes_true([&] { return reader.status().matched_writers == 1; }));
   EXPECT_EQ(monitor.peers(), 1);
+}
+
+/// One packet in five is lost, on both sides.
+class LossyStream : public ValueStream {
+ protected:
+  LossyStream() : ValueStream(0.2) {}
+};
+
+TEST_F(LossyStream, EmergencyStopArrivesAllTheSame) {
+  EmergencyStopReader early(participant_);
+  WireEmergencyStop stop;
+  const ChildProcess child = peer({"stop"});
+  ASSERT_TRUE(early.poll(&stop, kPatience)) << child.err();
+  EmergencyStopReader late(participant_);
+  ASSERT_TRUE(late.poll(&stop, kPatience)) << child.err();
+  EXPECT_EQ(test::difference(stop, test::test_stop(3)), "");
+}
+
+TEST_F(LossyStream, TheLastCommandArrivesAllTheSame) {
+  WheelCommandReader reader(participant_, {.robot = 1, .team = ""}, 1024);
+  // The writer goes on asserting its liveliness: that is what makes a loss known.
+  const ChildProcess child = peer({"commands", "--values", "100", "--assert-afterwards"});
+  WireWheelCommand command;
+  std::uint64_t last = 0;
+  while (last < 99) {
+    ASSERT_TRUE(reader.poll(&command, kPatience)) << child.err();
+    ASSERT_TRUE(last == 0 || command.sequence > last);
+    last = command.sequence;
+  }
 }
 
 class ClockStream : public ValueStream {
