@@ -76,15 +76,17 @@ struct PaintCase {
   double centroid_tolerance_px;
 };
 
-class PaintedDisc : public testing::TestWithParam<PaintCase> {};
+/// Worst error of centroid (px) and area (share) of 200 discs at random places.
+struct PaintError {
+  double centroid_px = 0.0;
+  double area = 0.0;
+};
 
-TEST_P(PaintedDisc, CentroidAndAreaAreThoseOfTheExactImage) {
-  const PaintCase& given = GetParam();
-  const CameraModel camera(test_camera(given.radius_px / 0.025));
-  SpritePainter painter(camera, given.point_spread_px, 0.0);
+PaintError worst_error(double radius_px, double point_spread_px, int samples_per_px) {
+  const CameraModel camera(test_camera(radius_px / 0.025));
+  SpritePainter painter(camera, point_spread_px, 0.0, samples_per_px);
   RandomStream random(11);
-  double worst_px = 0.0;
-  double worst_area = 0.0;
+  PaintError worst;
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector2d place_m =
         camera.on_plane({random.uniform(60, 260), random.uniform(60, 180)}, 0.1);
@@ -92,11 +94,27 @@ TEST_P(PaintedDisc, CentroidAndAreaAreThoseOfTheExactImage) {
     painter.paint(disc_at(0.025, place_m), nullptr, patch);
     const Eigen::Vector3d painted = patch_moments(patch);
     const Eigen::Vector3d exact = circle_image(camera, place_m, 0.025);
-    worst_px = std::max(worst_px, (painted - exact).head<2>().norm());
-    worst_area = std::max(worst_area, std::abs(painted.z() / exact.z() - 1.0));
+    worst.centroid_px = std::max(worst.centroid_px, (painted - exact).head<2>().norm());
+    worst.area = std::max(worst.area, std::abs(painted.z() / exact.z() - 1.0));
   }
-  EXPECT_LT(worst_px, given.centroid_tolerance_px);
-  EXPECT_LT(worst_area, 0.005);
+  return worst;
+}
+
+class PaintedDisc : public testing::TestWithParam<PaintCase> {};
+
+TEST_P(PaintedDisc, CentroidAndAreaAreThoseOfTheExactImage) {
+  const PaintCase& given = GetParam();
+  const PaintError worst = worst_error(given.radius_px, given.point_spread_px, 0);
+  EXPECT_LT(worst.centroid_px, given.centroid_tolerance_px);
+  EXPECT_LT(worst.area, 0.005);
+}
+
+TEST(SpritePainter, TwoSamplesAPixelAreTrueToTwoHundredthsOfAPixel) {
+  for (const double radius_px : {5.0, 6.0, 7.5}) {
+    const PaintError worst = worst_error(radius_px, 0.7, 2);
+    EXPECT_LT(worst.centroid_px, 0.02) << radius_px;
+    EXPECT_LT(worst.area, 0.01) << radius_px;
+  }
 }
 
 // Without any blur even exact pixel values have a centroid some 0.004 px beside that of the area:

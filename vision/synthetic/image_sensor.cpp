@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "vision/vector_clones.h"
+
 namespace nadir::vision {
 namespace {
 
@@ -112,6 +114,7 @@ void ImageSensor::add_noise(int count, RandomStream& random) {
   }
 }
 
+NADIR_VECTOR_CLONES
 void ImageSensor::quantise(int count, std::uint8_t* samples) const {
   if (gamma_table_.empty()) {
     for (int i = 0; i < count; ++i) {

@@ -54,7 +54,7 @@ Renderer::Renderer(Scene scene, std::uint64_t seed)
       seed_(seed),
       camera_(scene_.camera),
       light_(scene_.light, camera_.width_px(), camera_.height_px()),
-      painter_(camera_, scene_.point_spread_px, scene_.sensor.exposure_s),
+      painter_(camera_, scene_.point_spread_px, scene_.sensor.exposure_s, scene_.samples_per_px),
       sensor_(scene_.sensor) {
   for (const RobotPlacement& robot : placements(0)) robot_sprite(robot);  // throws on what is wrong
   make_background();

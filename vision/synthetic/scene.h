@@ -144,6 +144,7 @@ struct Scene {
   double rate_hz = 60.0;
   std::uint64_t frames = 0;      ///< of a source; 0: endless
   double point_spread_px = 0.7;  ///< RMS radius per axis of the optics' Gaussian blur
+  int samples_per_px = 0;        ///< of the grid that robots are painted on; 0: as fine as needed
   SceneSensor sensor;
   SceneLight light;
   SceneFloor floor;

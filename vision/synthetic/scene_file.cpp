@@ -296,6 +296,7 @@ Scene load_scene(const std::filesystem::path& file) {
   if (const auto optics = map.map_if_present("optics")) {
     scene.point_spread_px =
         optics->number_or("point_spread_px", scene.point_spread_px, {0.0, 50.0});
+    scene.samples_per_px = optics->integer_or("samples_per_px", scene.samples_per_px, {0, 16});
     optics->finish();
   }
   if (const auto sensor = map.map_if_present("sensor")) read_sensor(*sensor, scene.sensor);

@@ -34,11 +34,13 @@ double Sprite::extent_m() const {
   return extent;
 }
 
-SpritePainter::SpritePainter(const CameraModel& camera, double point_spread_px, double exposure_s)
+SpritePainter::SpritePainter(const CameraModel& camera, double point_spread_px, double exposure_s,
+                             int samples_per_px)
     : camera_(camera),
       point_spread_px_(point_spread_px),
       exposure_s_(exposure_s),
-      margin_px_(static_cast<int>(std::ceil(kKernelSigmas * point_spread_px))) {}
+      margin_px_(static_cast<int>(std::ceil(kKernelSigmas * point_spread_px))),
+      samples_per_px_(samples_per_px) {}
 
 void SpritePainter::set_fineness(int fineness) {
   if (fineness == fineness_) return;
@@ -133,7 +135,8 @@ void SpritePainter::paint(const Sprite& sprite, const ShadowEdge* shadow, Sprite
   const cv::Rect& region = patch.region_px;
   const bool fine = point_spread_px_ < kSharpOpticsPx ||
                     std::max(region.width, region.height) - 2 * margin_px_ <= kSmallRegionPx;
-  set_fineness(fine ? 8 : 4);
+  const int automatic = fine ? 8 : 4;
+  set_fineness(samples_per_px_ > 0 ? samples_per_px_ : automatic);
   prepare_instants(sprite, region);
   const PixelPoint low(fine_origin_u_px_, fine_origin_v_px_);
   const PixelPoint high = low + PixelPoint(fine_columns_ - 1, fine_rows_ - 1) / fineness_;
