@@ -12,6 +12,7 @@ void add_field_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 void add_noise_command(CLI::App& app);
 void add_colours_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
 
 /// Writes a whole file; '-' is stdout. Throws InputError where the file cannot be written.
 void write_text(const std::string& file, const std::string& text);

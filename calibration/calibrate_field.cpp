@@ -8,9 +8,13 @@
 #include <utility>
 
 #include "calibration/calibrate_commands.h"
+#include "calibration/calibrate_picture_points.h"
 #include "calibration/calibration_file.h"
 #include "calibration/calibration_summary.h"
 #include "calibration/field_calibration.h"
+#include "calibration/report_html.h"
+#include "calibration/report_json.h"
+#include "calibration/report_numbers.h"
 #include "calibration/survey_file.h"
 #include "vision/input/input_error.h"
 
@@ -35,6 +39,8 @@ struct FieldOptions {
   std::string nadir;
   std::optional<double> focal_px;
   bool force = false;
+  PictureOptions pictures;
+  std::string report;
   std::string json;
 };
 
@@ -97,12 +103,34 @@ FieldSettings settings_of(const FieldOptions& options) {
   return settings;
 }
 
+/// From the CSV file, or out of pictures, whose size then is the images' size.
+Survey survey_of(const FieldOptions& options, FieldSettings& settings) {
+  if (!is_picture_folder(options.points, options.pictures)) {
+    return load_survey(options.points, options.height_m);
+  }
+  SurveyedPictures pictures = points_from_pictures(options.points, options.pictures);
+  settings.image_width_px = pictures.width_px;
+  settings.image_height_px = pictures.height_px;
+  return {std::move(pictures.points), {}};
+}
+
+/// Report and JSON.
+void write_figures(const FieldOptions& options, const FieldPoints& points,
+                   const FieldResult& result) {
+  if (options.report.empty() && options.json.empty()) return;
+  const ReportNumbers numbers = report_numbers(points, result);
+  if (!options.report.empty()) write_text(options.report, report_html(points, result, numbers));
+  if (!options.json.empty()) {
+    write_text(options.json, with_report_numbers(field_json(points, result), numbers));
+  }
+}
+
 void run(const FieldOptions& options) {
   if (options.output == "-" && options.json == "-") {
     throw InputError({}, "-o and --json both want stdout", "give one of them a file");
   }
   FieldSettings settings = settings_of(options);
-  Survey survey = load_survey(options.points, options.height_m);
+  Survey survey = survey_of(options, settings);
   settings.camera.other_heights = std::move(survey.others);
   const FieldPoints& points = survey.plane;
   const FieldResult result = calibrate_field(points, settings);
@@ -113,7 +141,7 @@ void run(const FieldOptions& options) {
   // Wrong points make no calibration; what was asked for besides shows what is wrong with them.
   const bool is_refused = result.assessment.grade == Grade::kFail && !options.force;
   if (!is_refused) write_text(options.output, calibration_yaml(result.calibration));
-  if (!options.json.empty()) write_text(options.json, field_json(points, result));
+  write_figures(options, points, result);
   std::cerr << field_summary(points, result);
   if (is_refused) {
     throw std::runtime_error(options.output +
@@ -128,7 +156,8 @@ void add_field_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("field", "fits a plane map to surveyed points");
   command
       ->add_option("points", options->points,
-                   "POINTS.csv: u_px,v_px,x_m,y_m; a column z_m holds the height above the field, "
+                   "POINTS.csv: u_px,v_px,x_m,y_m, or a folder of pictures; a column z_m holds the "
+                   "height above the field, "
                    "and points at a second height tell where the camera is")
       ->required();
   command
@@ -163,7 +192,11 @@ void add_field_command(CLI::App& app) {
                    "focal length, px: tells the camera's place from the map itself")
       ->check(number_from_to(1.0, 1e6));
   command->add_flag("--force", options->force, "write the calibration although its grade is FAIL");
-  command->add_option("--json", options->json, "residuals and remarks as JSON; - is stdout");
+  add_picture_options(*command, options->pictures);
+  command->add_option("--report", options->report,
+                      "HTML page with figures: residuals, own error, coverage, models");
+  command->add_option("--json", options->json,
+                      "residuals, findings and the report's numbers as JSON; - is stdout");
   command->footer(
       "Example: nadir-calibrate field points.csv --height 0.12 --pixel-noise 0.3 -o cal.yaml");
   command->callback([options] { run(*options); });

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   nadir::calibration::add_validate_command(app);
   nadir::calibration::add_noise_command(app);
   nadir::calibration::add_colours_command(app);
+  nadir::calibration::add_compare_command(app);
   try {
     return parse_and_run(app, argc, argv);
   } catch (const nadir::vision::InputError& error) {
