@@ -44,7 +44,7 @@ class Smoother {
 
   Correction correct(const PlanarPose& measured, const PoseCovariance& covariance) {
     const State before = filter_.state();
-    const Correction correction = filter_.correct(measured, covariance);
+    Correction correction = filter_.correct(measured, covariance);
     if (correction.verdict == PoseVerdict::kRecovered) {
       // The filter admitted to be lost by as much: noise that came in at this moment.
       State inflated = before;
