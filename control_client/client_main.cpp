@@ -29,6 +29,12 @@ void add_experiment(CLI::App& app, nadir::control_client::ExperimentOptions& opt
       ->check(CLI::Range(1, 100000));
   experiment->add_option("--seed", options.first_seed,
                          "first seed of the runs; the experiment's own if absent");
+  experiment->add_option("--trajectory", options.trajectory, "in place of the experiment's own")
+      ->type_name("NAME|FILE");
+  experiment->add_option("--speed", options.speed, "factor on the speed of --trajectory")
+      ->check(CLI::Range(0.01, 100.0));
+  experiment->add_option("--robot", options.robot, "in place of data/robots/omni3.yaml")
+      ->type_name("ROBOT.yaml");
   experiment->add_option("--json", options.json, "write all figures to this file")
       ->type_name("FILE");
   experiment->add_option("--plot", options.plot, "draw the first runs' paths to this file")

@@ -1,5 +1,7 @@
 #include "control_client/trajectory_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -175,6 +177,32 @@ TrajectoryPtr load_trajectory(const std::filesystem::path& file) {
   if (extension == ".yaml" || extension == ".yml") return load_yaml(file);
   throw vision::InputError({file.string(), 0, 0}, "a trajectory is a .csv or .yaml file",
                            "name one, or a trajectory of nadir-client list");
+}
+
+TrajectoryPtr choose_trajectory(const std::string& name_or_file, const RobotModel& model,
+                                double speed) {
+  TrajectoryPtr trajectory = standard_trajectory(name_or_file);
+  if (!trajectory) {
+    if (std::filesystem::path(name_or_file).extension().empty()) {
+      std::string names;
+      for (const NamedTrajectory& each : standard_trajectories()) names += each.name + ", ";
+      throw vision::InputError({"nadir-client", 0, 0},
+                               "no trajectory is called '" + name_or_file + "'",
+                               "choose one of " + names + "or a .csv or .yaml file");
+    }
+    trajectory = load_trajectory(name_or_file);
+  }
+  if (speed != 1.0) trajectory = time_scaled(trajectory, speed);
+  const TrajectoryDemand demand = trajectory_demand(*trajectory, model);
+  const double most = std::max(demand.speed, demand.voltage);
+  if (most > 1.0) {
+    throw vision::InputError(
+        {name_or_file, 0, 0},
+        fmt::format("the trajectory asks for {:.2f} times the robot's {}", most,
+                    demand.speed >= demand.voltage ? "speed limit" : "motor voltage"),
+        fmt::format("drive it at {:.2f} of this speed or slower", 0.99 / most));
+  }
+  return trajectory;
 }
 
 }  // namespace nadir::control_client

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "control_client/trajectory.h"
@@ -39,5 +40,10 @@ TrajectoryPtr spline_trajectory(const std::vector<double>& times_s,
 ///
 /// Throws InputError.
 TrajectoryPtr load_trajectory(const std::filesystem::path& file);
+
+/// A standard trajectory by its name, or one from a file, `speed` times as fast (above 0). Throws
+/// InputError if there is none, or if it asks for more speed or voltage than the robot has.
+TrajectoryPtr choose_trajectory(const std::string& name_or_file, const RobotModel& model,
+                                double speed = 1.0);
 
 }  // namespace nadir::control_client

@@ -56,6 +56,20 @@ Experiment of_the_paper(const std::string& name, const std::string& description,
   return experiment;
 }
 
+/// For a trajectory of one's own.
+Experiment follow() {
+  Experiment experiment{"follow",
+                        "fusion, encoders and vision alone on --trajectory, exact nominal",
+                        kTrackingSeed,
+                        10,
+                        {}};
+  Scenario exact = scenario("circle");
+  exact.nominal.kind = NominalKind::kExact;
+  experiment.cases = driven_by(
+      {EstimatorKind::kFusion, EstimatorKind::kEncoders, EstimatorKind::kVision}, "", exact);
+  return experiment;
+}
+
 Experiment matched() {
   Experiment experiment{"matched",
                         "estimation with the odometry noise that the filter assumes",
@@ -226,6 +240,7 @@ const std::vector<Experiment>& experiments() {
       of_the_paper("e4", "roses of three and eight petals: fusion, encoders alone, vision alone",
                    {"rose3", "rose4"}),
       of_the_paper("e5", "all five trajectories: fusion, encoders alone, vision alone", kFive),
+      follow(),
       matched(),
       slip(),
       tracking(),

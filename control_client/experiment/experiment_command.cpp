@@ -11,7 +11,9 @@
 #include "control_client/experiment/experiment_report.h"
 #include "control_client/experiment/experiment_runner.h"
 #include "control_client/experiment/path_figure.h"
+#include "control_client/robot_file.h"
 #include "control_client/trajectory.h"
+#include "control_client/trajectory_file.h"
 #include "vision/input/input_error.h"
 
 namespace nadir::control_client {
@@ -25,6 +27,25 @@ const Experiment& experiment_of(const std::string& name) {
                            "choose one of " + names);
 }
 
+/// The experiment with the robot and the trajectory of the command line.
+Experiment adapted(Experiment experiment, const ExperimentOptions& options) {
+  if (!options.robot.empty()) {
+    const RobotConfig config = load_robot(options.robot);
+    for (ExperimentCase& each : experiment.cases) {
+      each.scenario.robot = config.robot;
+      each.scenario.control = config.control;
+    }
+  }
+  if (!options.trajectory.empty()) {
+    for (ExperimentCase& each : experiment.cases) {
+      each.scenario.trajectory =
+          choose_trajectory(options.trajectory, RobotModel(each.scenario.robot), options.speed);
+      each.label = options.trajectory + (each.label.empty() ? "" : " in place of " + each.label);
+    }
+  }
+  return experiment;
+}
+
 void write_text(const std::string& text, const std::string& file) {
   std::ofstream stream(file, std::ios::binary);
   stream << text;
@@ -35,7 +56,7 @@ void write_text(const std::string& text, const std::string& file) {
 }  // namespace
 
 void run_experiment_command(const ExperimentOptions& options, bool shows_progress) {
-  const Experiment& experiment = experiment_of(options.name);
+  const Experiment experiment = adapted(experiment_of(options.name), options);
   const ExperimentResult result =
       run_experiment(experiment, options.first_seed.value_or(experiment.first_seed),
                      options.runs.value_or(experiment.runs), [&](std::size_t done) {

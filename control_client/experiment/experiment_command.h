@@ -9,6 +9,9 @@ namespace nadir::control_client {
 /// What `nadir-client experiment` was told.
 struct ExperimentOptions {
   std::string name;
+  std::string trajectory;  ///< name or file, for every case; empty: the experiment's own
+  double speed = 1.0;      ///< factor on the speed of that trajectory
+  std::string robot;       ///< ROBOT.yaml for every case; empty: omni3
   std::optional<int> runs;
   std::optional<std::uint64_t> first_seed;
   std::string json;  ///< empty: none
@@ -16,7 +19,8 @@ struct ExperimentOptions {
 };
 
 /// Runs an experiment and prints its table on standard output. Throws vision::InputError for an
-/// unknown name and std::runtime_error for a file that cannot be written.
+/// unknown name, a wrong file or a trajectory that the robot cannot drive, and std::runtime_error
+/// for a file that cannot be written.
 void run_experiment_command(const ExperimentOptions& options, bool shows_progress);
 
 /// `nadir-client list`: trajectories and experiments, a line each.
