@@ -14,7 +14,7 @@ struct RobotConfig {
 };
 
 /// Reads ROBOT.yaml strictly; every key but `wheels` has the default of omni3. Throws InputError:
-/// unknown, duplicate or missing key, value out of range, fewer than 3 or more than 4 wheels,
+/// unknown, duplicate or missing key, value out of range, fewer than 3 or more than 6 wheels,
 /// wheels that cannot drive the body in all directions.
 RobotConfig load_robot(const std::filesystem::path& file);
 
