@@ -13,9 +13,10 @@
 namespace nadir::fusion {
 
 /// How far a pose walks away by the odometry's white noise within a second; twice as far in four.
+/// Commanded velocities are wrong along the robot's way more than across.
 struct OdometryWalk {
-  double u_m_per_sqrt_s = 0.005;
-  double v_m_per_sqrt_s = 0.005;
+  double u_m_per_sqrt_s = 0.006;
+  double v_m_per_sqrt_s = 0.004;
   double r_rad_per_sqrt_s = 0.05;
 
   WhiteOdometryNoise noise() const;
