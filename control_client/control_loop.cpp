@@ -14,9 +14,12 @@ ControlLoop::ControlLoop(const RobotModel& model, const ControlParameters& contr
 const Eigen::Vector3d& ControlLoop::tick(const fusion::PlanarPose& estimate) {
   if (has_started_) nominal_.advance();
   has_started_ = true;
-  command_ = outer_.body_rate_command(nominal_.motion(), estimate, control_.tick_s, !is_saturated_)
-                 .cwiseMax(-command_limit_)
-                 .cwiseMin(command_limit_);
+  return tick_at(
+      outer_.body_rate_command(nominal_.motion(), estimate, control_.tick_s, !is_saturated_));
+}
+
+const Eigen::Vector3d& ControlLoop::tick_at(const Eigen::Vector3d& body_rates) {
+  command_ = body_rates.cwiseMax(-command_limit_).cwiseMin(command_limit_);
   is_saturated_ = false;
   return command_;
 }

@@ -27,6 +27,9 @@ class ControlLoop {
   /// at until the next tick, within the robot's limits (u, v in m/s, r in rad/s).
   const Eigen::Vector3d& tick(const fusion::PlanarPose& estimate);
 
+  /// The same with body rates that another controller asks for; nominal() stays as it is.
+  const Eigen::Vector3d& tick_at(const Eigen::Vector3d& body_rates);
+
   /// The inner loop over the next inner step, with the mean body rates of the last.
   WheelVector inner_step(const Eigen::Vector3d& measured_rates);
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "control_client/experiment/fusion_estimator.h"
+#include "fusion/odometry_noise.h"
 
 namespace nadir::control_client {
 
@@ -24,9 +25,27 @@ std::string estimator_name(EstimatorKind kind) {
       return "fusion, no replay";
     case EstimatorKind::kFusionNoRecovery:
       return "fusion, no recovery";
+    case EstimatorKind::kRaceEkf:
+      return "EKF of the race";
+    case EstimatorKind::kRaceEkfOneNoise:
+      return "the same, one R";
   }
   throw std::invalid_argument("no such estimator");
 }
+
+namespace {
+
+std::unique_ptr<Estimator> race_ekf(bool with_one_noise) {
+  using Ekf = fusion::DelayedFusion<fusion::AboutEstimate, fusion::AccelerationOdometryNoise>;
+  Ekf::Settings settings;
+  settings.filter.gate = fusion::Gate::none();
+  auto ekf = std::make_unique<FusionEstimator<Ekf>>(settings);
+  constexpr double kMiddle_px = 25.0;
+  if (with_one_noise) ekf->assume_variances(pose_variances(kMiddle_px, kMiddle_px));
+  return ekf;
+}
+
+}  // namespace
 
 std::unique_ptr<Estimator> make_estimator(EstimatorKind kind, const fusion::WheelGeometry& geometry,
                                           double rim_sigma_mps, double tick_s) {
@@ -52,6 +71,9 @@ std::unique_ptr<Estimator> make_estimator(EstimatorKind kind, const fusion::Whee
     case EstimatorKind::kFusionNoRecovery:
       settings.filter.recovery.poses = 0;
       return std::make_unique<Nominal>(settings);
+    case EstimatorKind::kRaceEkf:
+    case EstimatorKind::kRaceEkfOneNoise:
+      return race_ekf(kind == EstimatorKind::kRaceEkfOneNoise);
   }
   throw std::invalid_argument("no such estimator");
 }

@@ -18,6 +18,8 @@ enum class EstimatorKind {
   kFusionNoGate,      ///< every frame is believed
   kFusionNoReplay,    ///< late frames are taken as if they were of now
   kFusionNoRecovery,  ///< a locked-out gate stays locked
+  kRaceEkf,           ///< S3's: EKF, odometry noise that knows the acceleration
+  kRaceEkfOneNoise,   ///< the same with one variance for all frames, that of 20 to 30 pixels
 };
 
 /// For tables, as in "fusion, no gate".

@@ -27,7 +27,8 @@ class Run {
     for (Estimator* estimator : estimators_) {
       estimator->start(tick_time(0, tick_s_), plant_.pose_world_robot());
     }
-    loop_.tick(estimators_.front()->pose());
+    if (scenario.race) race_.emplace(*scenario.race);
+    lead();
   }
 
   RunRecord finish() {
@@ -45,22 +46,36 @@ class Run {
   void advance(int tick) {
     TickRecord now;
     now.time_s = tick * tick_s_;
-    const NominalMotion nominal_before = loop_.nominal();
+    const NominalMotion nominal_before = nominal_;
     drive(now);
     if (const auto& kidnapping = scenario_.faults.kidnapping;
         kidnapping && tick == static_cast<int>(std::lround(kidnapping->at_s / tick_s_))) {
       plant_.displace(kidnapping->by);
     }
     estimate(tick, now.measured_mean_rates, nominal_before);
-    loop_.tick(estimators_.front()->pose());
+    lead();
     now.command = scenario_.trajectory->at(now.time_s).pose;
-    now.nominal = loop_.nominal();
+    if (race_) now.command << race_->corner_m(), 0.0;
+    now.nominal = nominal_;
     now.truth = plant_.pose();
     const Eigen::Vector3d deviation = now.truth - now.nominal.pose;
     record_.has_diverged = record_.has_diverged ||
                            deviation.head<2>().norm() > scenario_.diverged_m ||
                            std::abs(deviation.z()) > scenario_.diverged_rad;
     record_.ticks.push_back(now);
+  }
+
+  // The outer loop, or the guidance of a race.
+  void lead() {
+    const fusion::PlanarPose pose = estimators_.front()->pose();
+    if (!race_) {
+      loop_.tick(pose);
+      nominal_ = loop_.nominal();
+      return;
+    }
+    const Eigen::Vector3d& rates = loop_.tick_at(race_->body_rates(pose));
+    nominal_ = {{pose.x_m, pose.y_m, pose.heading_rad},
+                rotation_world_body(pose.heading_rad) * rates};
   }
 
   // Inner loop, plant and encoders over one tick.
@@ -118,6 +133,8 @@ class Run {
   std::span<Estimator* const> estimators_;
   RobotModel model_;
   ControlLoop loop_;
+  std::optional<RaceGuidance> race_;
+  NominalMotion nominal_;
   Plant plant_;
   Encoders encoders_;
   VisionFeed vision_;

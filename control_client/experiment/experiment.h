@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "control_client/control_loop.h"
 #include "control_client/control_parameters.h"
 #include "control_client/experiment/estimator.h"
+#include "control_client/experiment/race.h"
 #include "control_client/simulation/encoders.h"
 #include "control_client/simulation/faults.h"
 #include "control_client/simulation/vision_feed.h"
@@ -17,6 +19,9 @@ namespace nadir::control_client {
 struct Scenario {
   TrajectoryPtr trajectory;
   double duration_s = 0.0;  ///< 0: the trajectory's own
+  /// Leads the robot from the trajectory's start on instead of the trajectory. The nominal motion
+  /// is then where the robot believes to be, and the command the corner that it is on its way to.
+  std::optional<RaceParameters> race;
   RobotParameters robot;
   ControlParameters control;
   NominalSettings nominal;

@@ -56,6 +56,25 @@ Experiment of_the_paper(const std::string& name, const std::string& description,
   return experiment;
 }
 
+/// S3's race at 25 Hz; behind x = -0.05 m the light is bad.
+Experiment race(const std::string& name, const std::string& description,
+                const std::vector<EstimatorKind>& estimators) {
+  Scenario race;
+  race.trajectory = step_trajectory({-0.2, -0.2, 0.0}, 30.0);
+  race.race.emplace();
+  race.control.tick_s = 0.04;
+  race.control.inner_steps = 8;
+  race.encoders.tick_s = race.control.tick_s;
+  race.vision.ticks_per_frame = 1;
+  race.vision.min_delay_s = 0.0;
+  race.vision.max_delay_s = 0.0;
+  race.vision.loss = 0.0;
+  race.vision.outliers = 0.0;
+  race.vision.min_pixels = 30.0;
+  race.vision.dim_below_x_m = -0.05;
+  return {name, description, kEstimationSeed, kRuns, {{"race", race, estimators}}};
+}
+
 /// For a trajectory of one's own.
 Experiment follow() {
   Experiment experiment{"follow",
@@ -240,6 +259,11 @@ const std::vector<Experiment>& experiments() {
       of_the_paper("e4", "roses of three and eight petals: fusion, encoders alone, vision alone",
                    {"rose3", "rose4"}),
       of_the_paper("e5", "all five trajectories: fusion, encoders alone, vision alone", kFive),
+      race("e6", "robot race between four corners: what odometry loses",
+           {EstimatorKind::kTruth, EstimatorKind::kEncoders}),
+      race("e7", "robot race in good and bad light: EKF with the variance of each frame",
+           {EstimatorKind::kRaceEkf, EstimatorKind::kRaceEkfOneNoise, EstimatorKind::kEncoders,
+            EstimatorKind::kVision}),
       follow(),
       matched(),
       slip(),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <type_traits>
 
 #include "control_client/experiment/estimator.h"
@@ -25,6 +26,9 @@ class FusionEstimator : public Estimator {
                            LateFrames late = LateFrames::kReplayed)
       : fusion_(settings), late_(late) {}
 
+  /// Takes these variances (m^2, m^2, rad^2) for every frame's own.
+  void assume_variances(const Eigen::Vector3d& variances) { variances_ = variances; }
+
   void start(fusion::Timestamp time, const fusion::PlanarPose& pose) override {
     fusion_.start(time, pose, known_start_covariance());
     decisions_.clear();
@@ -47,7 +51,7 @@ class FusionEstimator : public Estimator {
       poses[i].frame = frames[i].number;
       poses[i].capture = late_ == LateFrames::kReplayed ? captures[i] : fusion_.now();
       poses[i].pose = frames[i].pose_world_robot;
-      poses[i].covariance = frames[i].variances.asDiagonal();
+      poses[i].covariance = variances_.value_or(frames[i].variances).asDiagonal();
     }
     std::vector<fusion::Correction> results(frames.size());
     fusion_.add_poses(poses, results);
@@ -75,6 +79,7 @@ class FusionEstimator : public Estimator {
  private:
   Fusion fusion_;
   LateFrames late_;
+  std::optional<Eigen::Vector3d> variances_;
   std::map<std::uint64_t, FrameDecision> decisions_;
 };
 
