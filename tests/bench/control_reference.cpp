@@ -137,6 +137,10 @@ const std::vector<ControlReference>& control_references() {
       {"blackout", "4 s at 8 s", "fusion", "", 8.0, 0},
       {"blackout", "bursts of 0.4 s, 10 %", "vision alone", "", 342, 0},
       {"blackout", "0.5 s at 8 s", "vision alone", "", 85, 0},
+      {"e7", "race", "EKF of the race", "encoders alone", 81.9, 10.4},
+      {"e7", "race", "EKF of the race", "vision alone", 3.76, 9.47},
+      {"e7", "race", "EKF of the race", "EKF of the race", 1.95, 1.32},
+      {"e7", "race", "EKF of the race", "the same, one R", 2.23, 1.80},
   };
   return kReferences;
 }

@@ -55,7 +55,7 @@ std::optional<PoseErrors> errors_of(const CaseResult& each, const ControlReferen
 std::vector<ExperimentResult> run_all(const Options& options) {
   std::vector<const nadir::control_client::Experiment*> wanted;
   for (const char* name :
-       {"matched", "slip", "tracking", "command", "delay", "blackout", "shaping", "faults"}) {
+       {"matched", "slip", "tracking", "command", "delay", "blackout", "shaping", "faults", "e7"}) {
     if (options.only.empty() || options.only == name) {
       wanted.push_back(nadir::control_client::find_experiment(name));
     }
