@@ -25,8 +25,7 @@ const Eigen::Vector3d& ControlLoop::tick_at(const Eigen::Vector3d& body_rates) {
 }
 
 WheelVector ControlLoop::inner_step(const Eigen::Vector3d& measured_rates) {
-  const WheelVector voltages_v =
-      inner_.voltages_v(command_, measured_rates, control_.inner_step_s());
+  WheelVector voltages_v = inner_.voltages_v(command_, measured_rates, control_.inner_step_s());
   is_saturated_ = is_saturated_ || inner_.is_saturated();
   return voltages_v;
 }

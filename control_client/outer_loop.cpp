@@ -3,7 +3,7 @@
 namespace nadir::control_client {
 
 Eigen::Matrix3d OuterLoop::proportional_gain(const NominalMotion& nominal) const {
-  const Eigen::Vector3d rates = nominal.body_rates();
+  Eigen::Vector3d rates = nominal.body_rates();
   Eigen::Matrix3d gain =
       rotation_world_body(nominal.pose.z()).transpose() * parameters_.proportional_gain_per_s();
   gain(0, 2) -= rates.y();
@@ -20,8 +20,8 @@ Eigen::Vector3d OuterLoop::body_rate_command(const NominalMotion& nominal,
                                              bool integrate) {
   const Eigen::Vector3d error = {pose.x_m - nominal.pose.x(), pose.y_m - nominal.pose.y(),
                                  fusion::wrap_angle(pose.heading_rad - nominal.pose.z())};
-  const Eigen::Vector3d rates = nominal.body_rates() - proportional_gain(nominal) * error -
-                                integral_gain(nominal) * error_integral_;
+  Eigen::Vector3d rates = nominal.body_rates() - proportional_gain(nominal) * error -
+                          integral_gain(nominal) * error_integral_;
   if (integrate) error_integral_ += dt_s * error;
   return rates;
 }

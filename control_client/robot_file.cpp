@@ -13,7 +13,7 @@ using vision::YamlMap;
 
 // Ranges that nobody's robot leaves: they catch wrong units.
 constexpr ValidRange kMass_kg{0.01, 1000.0};
-constexpr ValidRange kInertia_kg_m2{1e-6, 1000.0};
+constexpr ValidRange kInertia_kgm2{1e-6, 1000.0};
 constexpr ValidRange kLength_m{0.001, 5.0};
 constexpr ValidRange kMotorConstant{1e-6, 10.0};
 constexpr ValidRange kPositive{1e-12, 1e6};
@@ -82,7 +82,7 @@ RobotConfig load_robot(const std::filesystem::path& file) {
   RobotParameters& robot = config.robot;
   robot.name = map.text_or("name", file.stem().string());
   robot.mass_kg = map.number_or("mass_kg", robot.mass_kg, kMass_kg);
-  robot.inertia_kg_m2 = map.number_or("inertia_kg_m2", robot.inertia_kg_m2, kInertia_kg_m2);
+  robot.inertia_kg_m2 = map.number_or("inertia_kg_m2", robot.inertia_kg_m2, kInertia_kgm2);
   robot.wheel_radius_m = map.number_or("wheel_radius_m", robot.wheel_radius_m, kLength_m);
   robot.wheels = read_wheels(map);
   robot.max_speed_mps = map.number_or("max_speed_mps", robot.max_speed_mps, kPositive);

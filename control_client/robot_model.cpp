@@ -31,6 +31,7 @@ void check(const RobotParameters& parameters) {
 
 fusion::WheelGeometry wheel_geometry(const std::vector<WheelMount>& mounts) {
   std::vector<fusion::Wheel> wheels;
+  wheels.reserve(mounts.size());
   for (const WheelMount& mount : mounts) {
     wheels.push_back({-std::sin(mount.angle_rad), std::cos(mount.angle_rad), mount.distance_m});
   }

@@ -156,7 +156,7 @@ TrajectoryPtr time_scaled(TrajectoryPtr trajectory, double factor) {
 }
 
 const std::vector<NamedTrajectory>& standard_trajectories() {
-  static const std::vector<NamedTrajectory> kTrajectories = {
+  static const std::vector<NamedTrajectory> all = {
       {"square-turning", "square of 0.5 m at 0.2 m/s, two laps, an eighth turn a side",
        square_trajectory(0.5, 0.2, 2, kPi / 4.0)},
       {"square", "square of 0.5 m at 0.2 m/s, two laps, heading 0",
@@ -167,7 +167,7 @@ const std::vector<NamedTrajectory>& standard_trajectories() {
       {"rose4", "rose of eight petals of 0.3 m, 31.4 s", rose_trajectory(0.3, 4, 0.2)},
       {"step", "step of 1 m, 0.5 m and 1 rad, 8 s", step_trajectory({1.0, 0.5, 1.0}, 8.0)},
   };
-  return kTrajectories;
+  return all;
 }
 
 TrajectoryPtr standard_trajectory(const std::string& name) {

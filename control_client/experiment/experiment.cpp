@@ -113,6 +113,7 @@ class Run {
     }
     const std::vector<VisionFrame> frames = vision_.arrivals(tick);
     std::vector<fusion::Timestamp> captures;
+    captures.reserve(frames.size());
     for (const VisionFrame& frame : frames) {
       captures.push_back(tick_time(frame.capture_tick, tick_s_));
     }

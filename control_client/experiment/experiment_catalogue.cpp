@@ -33,6 +33,7 @@ std::vector<ExperimentCase> driven_by(const std::vector<EstimatorKind>& drivers,
                                       const std::string& label, const Scenario& scenario,
                                       double rim_sigma_mps = 0.03) {
   std::vector<ExperimentCase> cases;
+  cases.reserve(drivers.size());
   for (const EstimatorKind driver : drivers) {
     cases.push_back({label, scenario, {driver}, rim_sigma_mps});
   }
@@ -60,7 +61,7 @@ Experiment of_the_paper(const std::string& name, const std::string& description,
 Experiment race(const std::string& name, const std::string& description,
                 const std::vector<EstimatorKind>& estimators) {
   Scenario race;
-  race.trajectory = step_trajectory({-0.2, -0.2, 0.0}, 30.0);
+  race.trajectory = step_trajectory(Eigen::Vector3d::Zero(), 30.0);  // starts in the middle
   race.race.emplace();
   race.control.tick_s = 0.04;
   race.control.inner_steps = 8;
@@ -171,7 +172,7 @@ Experiment command() {
       Scenario each = scenario(trajectory);
       each.nominal = nominal;
       append(experiment.cases, driven_by({EstimatorKind::kFusion, EstimatorKind::kEncoders},
-                                         trajectory + ", " + way, each));
+                                         fmt::format("{}, {}", trajectory, way), each));
     }
   }
   return experiment;
@@ -250,7 +251,7 @@ Experiment faults() {
 }  // namespace
 
 const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> kExperiments = {
+  static const std::vector<Experiment> all = {
       of_the_paper("e1", "square with rotation: fusion, encoders alone, vision alone",
                    {"square-turning"}),
       of_the_paper("e2", "square with fixed heading: fusion, encoders alone, vision alone",
@@ -274,7 +275,7 @@ const std::vector<Experiment>& experiments() {
       shaping(),
       faults(),
   };
-  return kExperiments;
+  return all;
 }
 
 const Experiment* find_experiment(const std::string& name) {

@@ -133,9 +133,9 @@ std::string draw_block(const Block& block, std::size_t index) {
 }
 
 std::string legend_entry(double& x, double y, const std::string& mark, double mark_width,
-                         const std::string& words) {
-  const std::string out = mark + svg_text(x + mark_width + 6.0, y + 4.0, words, "class=\"note\"");
-  x += mark_width + 6.0 + 5.8 * static_cast<double>(words.size()) + 18.0;
+                         const std::string& words, double words_width) {
+  std::string out = mark + svg_text(x + mark_width + 6.0, y + 4.0, words, "class=\"note\"");
+  x += mark_width + words_width + 26.0;
   return out;
 }
 
@@ -148,11 +148,11 @@ std::string legend(double y) {
     return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" class=\"{}\"/>\n", x + 4.0, y,
                        radius, look);
   };
-  std::string out = legend_entry(x, y, stroke("command"), 26.0, "commanded");
-  out += legend_entry(x, y, stroke("true0"), 26.0, "true (each driver its colour)");
-  out += legend_entry(x, y, stroke("estimate"), 26.0, "estimated");
-  out += legend_entry(x, y, ring(1.6, "used"), 8.0, "frame used");
-  out += legend_entry(x, y, ring(3.0, "rejected"), 8.0, "frame rejected");
+  std::string out = legend_entry(x, y, stroke("command"), 26.0, "commanded", 66.0);
+  out += legend_entry(x, y, stroke("true0"), 26.0, "true (each driver its colour)", 154.0);
+  out += legend_entry(x, y, stroke("estimate"), 26.0, "estimated", 58.0);
+  out += legend_entry(x, y, ring(1.6, "used"), 8.0, "frame used", 64.0);
+  out += legend_entry(x, y, ring(3.0, "rejected"), 8.0, "frame rejected", 84.0);
   return out;
 }
 
