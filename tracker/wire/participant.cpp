@@ -5,7 +5,7 @@
 namespace nadir::tracker {
 
 Participant::Participant(const WireOptions& options)
-    : state_(std::make_shared<const State>(options, make_participant(options))) {}
+    : state_(std::make_shared<const State>(State{options, make_participant(options)})) {}
 
 const WireOptions& Participant::options() const { return state_->options; }
 
