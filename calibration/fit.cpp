@@ -43,15 +43,24 @@ ResidualEstimate estimate_without_residuals(const PlaneMap& map, const FieldPoin
   return {LackOfFit::uniform(assumed_m2.mean()), assumed_m2};
 }
 
+Eigen::MatrixX2d axis_basis(const PlaneMap& map, const vision::PixelPoint& pixel) {
+  return std::visit([&](const auto& model) { return model.axis_basis(pixel); }, map.model());
+}
+
 /// Of a camera's points, whose distances in the image were made small: on the plane their noise
-/// differs from place to place. Polynomials take all points alike.
-std::function<Eigen::Vector2d(const vision::PixelPoint&)> noise_scale(const PlaneMap& map,
-                                                                      const FieldPoints& points,
-                                                                      const StatedNoise& noise) {
+/// differs from place to place (polynomials take all points alike). Outside of the points' hull, in
+/// the corners of their box, a lens may fold: there the nearest place of the hull counts.
+void be_a_camera(const PlaneMap& map, const FieldPoints& points, const StatedNoise& noise,
+                 FitResiduals* fit) {
+  const ConvexHull hull = pixel_hull(points);
   const StatedNoise taken = noise.is_stated() ? noise : StatedNoise{kAssumedPixelNoise_px, {}};
   const Eigen::Vector2d mean_m2 = mean_variance_m2(point_covariances_m2(map, points, taken));
-  return [&map, taken, mean_m2](const vision::PixelPoint& pixel) -> Eigen::Vector2d {
-    return taken.variance_m2(map.jacobian_m_per_px(pixel)).cwiseQuotient(mean_m2).cwiseSqrt();
+  fit->basis = [&map, hull](const vision::PixelPoint& pixel) -> Eigen::MatrixX2d {
+    return axis_basis(map, hull.nearest(pixel));
+  };
+  fit->noise_scale = [&map, hull, taken, mean_m2](const vision::PixelPoint& pixel) {
+    const Eigen::Matrix2d jacobian = map.jacobian_m_per_px(hull.nearest(pixel));
+    return Eigen::Vector2d(taken.variance_m2(jacobian).cwiseQuotient(mean_m2).cwiseSqrt());
   };
 }
 
@@ -61,10 +70,7 @@ ResidualEstimate split_residuals(const PlaneMap& map, const FieldPoints& points,
   FitResiduals fit{pixel_box(points),
                    {},
                    Eigen::MatrixX2d(residuals.size(), 2),
-                   [&map](const vision::PixelPoint& pixel) -> Eigen::MatrixX2d {
-                     return std::visit([&](const auto& model) { return model.axis_basis(pixel); },
-                                       map.model());
-                   }};
+                   [&map](const vision::PixelPoint& pixel) { return axis_basis(map, pixel); }};
   const auto terms = static_cast<std::size_t>(fit.basis(points.points.front().pixel).rows());
   if (residuals.size() <= terms) return estimate_without_residuals(map, points, noise);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
@@ -73,7 +79,7 @@ ResidualEstimate split_residuals(const PlaneMap& map, const FieldPoints& points,
   }
   const bool is_noisy = noise.pixel_px.value_or(0.0) > 0.0 || noise.survey_m.value_or(0.0) > 0.0;
   if (polynomial_order(map.kind()) == 0 && (is_noisy || !noise.is_stated())) {
-    fit.noise_scale = noise_scale(map, points, noise);
+    be_a_camera(map, points, noise, &fit);
   }
   std::optional<Eigen::Vector2d> stated_m2;
   if (noise.is_stated()) stated_m2 = mean_variance_m2(point_covariances_m2(map, points, noise));

@@ -12,8 +12,10 @@ namespace {
 /// this many times what the noise explains: a noise that is stated a little too small is no misfit.
 constexpr double kUnlikely = 1e-3;
 constexpr double kMisfitRatio = 1.5;
-/// Without stated noise: another model has so much less error in cross-validation.
+/// Without stated noise: another model has so much less error in cross-validation, and what is left
+/// is more than the usual error of finding a point well.
 constexpr double kMuchBetter = 0.6;
+constexpr double kWellFound_px = 0.2;
 /// Corners are found to well below a pixel; more than this asks for an explanation even where no
 /// noise is stated.
 constexpr double kUsualResidual_px = 1.0;
@@ -61,7 +63,7 @@ std::optional<Finding> misfit(const StatedNoise& noise, const FieldFit& fit,
   const ModelScore& best = score_of(choice, choice.model);
   const bool is_beaten = own.is_fitted && choice.model != own.model && best.is_fitted &&
                          best.cross_validated_rms_m < kMuchBetter * own.cross_validated_rms_m &&
-                         fit.residuals.rms_px > kTooGood_px;
+                         fit.residuals.rms_px > kWellFound_px;
   if (!is_beaten && fit.residuals.rms_px <= kUsualResidual_px) return std::nullopt;
   return Finding{Grade::kWarn,
                  "misfit",

@@ -71,23 +71,23 @@ Vector2d neighbours_error_m(const FieldPoints& points, const RobustReference& re
   return {median(std::move(x_m)), median(std::move(y_m))};
 }
 
-/// How much worse the reference may be at each point than in the middle.
-std::vector<double> border_factors(const FieldPoints& points) {
+/// Which points have no neighbours on one side.
+std::vector<bool> border_points(const FieldPoints& points) {
   const ConvexHull hull = pixel_hull(points);
   const PixelBox box = pixel_box(points);
   const vision::PixelPoint middle = 0.5 * (box.low_px + box.high_px);
-  std::vector<double> factors;
+  std::vector<bool> is_border;
   for (const FieldPoint& point : points.points) {
     // A little farther out it would be outside.
     const vision::PixelPoint outward = (1.0 + 2.0 * kBorderShare) * (point.pixel - middle) + middle;
-    factors.push_back(hull.holds(outward) ? 1.0 : kBorderFactor);
+    is_border.push_back(!hull.holds(outward));
   }
-  return factors;
+  return is_border;
 }
 
 std::vector<Outlier> outliers(const FieldPoints& points, const RobustReference& reference,
                               const StatedNoise& noise) {
-  const std::vector<double> factors = border_factors(points);
+  const std::vector<bool> is_border = border_points(points);
   const double survey_m = noise.survey_m.value_or(0.0);
   const double pixel_px = noise.pixel_px.value_or(0.0);
   std::vector<Outlier> found;
@@ -97,9 +97,10 @@ std::vector<Outlier> outliers(const FieldPoints& points, const RobustReference& 
     const double scale_m =
         residual.distance_px > 0.0 ? residual.distance_m / residual.distance_px : 0.0;
     const double sigma_m = std::max({reference.sigma_m, survey_m, pixel_px * scale_m});
-    const double limit_m =
+    double limit_m =
         std::max({kOutlierSigmas * sigma_m, kOutlierSigmas * reference.sigma_px * scale_m,
                   kLeastOutlier_px * scale_m});
+    if (is_border[i]) limit_m = std::max(kBorderFactor * limit_m, kSurelyTyped_px * scale_m);
     if (!(residual.distance_m > limit_m)) continue;
     const Vector2d around_m = neighbours_error_m(points, reference, i);
     if ((residual.error_m - around_m).norm() <= limit_m) continue;
@@ -119,6 +120,7 @@ bool is_right(const Outlier& outlier, const Vector2d& place_m) {
 struct Change {
   const char* words;
   std::function<Vector2d(const Vector2d&)> applied;
+  bool is_unit = false;  ///< only for places outside of the field of the others
 };
 
 /// Slips that one change undoes.
@@ -128,54 +130,68 @@ const std::vector<Change>& changes() {
       {"x_m has the wrong sign", [](const Vector2d& p) { return Vector2d(-p.x(), p.y()); }},
       {"y_m has the wrong sign", [](const Vector2d& p) { return Vector2d(p.x(), -p.y()); }},
       {"x_m and y_m have the wrong sign", [](const Vector2d& p) { return Vector2d(-p); }},
-      {"x_m and y_m are in millimetres", [](const Vector2d& p) { return Vector2d(p / 1e3); }},
-      {"x_m is in millimetres", [](const Vector2d& p) { return Vector2d(p.x() / 1e3, p.y()); }},
-      {"y_m is in millimetres", [](const Vector2d& p) { return Vector2d(p.x(), p.y() / 1e3); }},
-      {"x_m and y_m are in centimetres", [](const Vector2d& p) { return Vector2d(p / 1e2); }},
-      {"x_m is in centimetres", [](const Vector2d& p) { return Vector2d(p.x() / 1e2, p.y()); }},
-      {"y_m is in centimetres", [](const Vector2d& p) { return Vector2d(p.x(), p.y() / 1e2); }},
+      {"x_m and y_m are in millimetres", [](const Vector2d& p) { return Vector2d(p / 1e3); }, true},
+      {"x_m is in millimetres", [](const Vector2d& p) { return Vector2d(p.x() / 1e3, p.y()); },
+       true},
+      {"y_m is in millimetres", [](const Vector2d& p) { return Vector2d(p.x(), p.y() / 1e3); },
+       true},
+      {"x_m and y_m are in centimetres", [](const Vector2d& p) { return Vector2d(p / 1e2); }, true},
+      {"x_m is in centimetres", [](const Vector2d& p) { return Vector2d(p.x() / 1e2, p.y()); },
+       true},
+      {"y_m is in centimetres", [](const Vector2d& p) { return Vector2d(p.x(), p.y() / 1e2); },
+       true},
   };
   return kChanges;
+}
+
+/// Farther from the origin in x or y than all other points.
+bool is_outside_of_others(const FieldPoints& points, std::size_t index) {
+  Vector2d farthest_m = Vector2d::Zero();
+  for (std::size_t i = 0; i < points.points.size(); ++i) {
+    if (i == index) continue;
+    farthest_m = farthest_m.cwiseMax(points.points[i].position_m.cwiseAbs());
+  }
+  return (points.points[index].position_m.cwiseAbs().array() > farthest_m.array()).any();
 }
 
 Finding failure(const char* kind, std::vector<int> lines, std::string text) {
   return {Grade::kFail, kind, std::move(lines), std::move(text)};
 }
 
-/// Off in one axis alone, or in both.
-Finding typing_error(const FieldPoint& point, const Outlier& outlier) {
+/// Off in one axis alone, or in both. `guess` ends the sentence.
+Finding typing_error(const FieldPoint& point, const Outlier& outlier, const std::string& guess) {
   const Vector2d off_m = point.position_m - outlier.expected_m;
-  const double across_m = std::min(std::abs(off_m.x()), std::abs(off_m.y()));
+  const double across_m = off_m.cwiseAbs().minCoeff();
   if (across_m > std::max(outlier.tolerance_m / 3.0, 0.25 * off_m.cwiseAbs().maxCoeff())) {
     return failure("typing error", {point.line},
                    fmt::format("line {}: the place is off by {:.0f} mm in x_m and {:.0f} mm in "
-                               "y_m; the other points say ({:.3f}, {:.3f}). A typing error, or "
-                               "another point's pixel?",
+                               "y_m; the other points say ({:.3f}, {:.3f}). {}",
                                point.line, 1e3 * off_m.x(), 1e3 * off_m.y(), outlier.expected_m.x(),
-                               outlier.expected_m.y()));
+                               outlier.expected_m.y(), guess));
   }
   const int axis = std::abs(off_m.x()) > std::abs(off_m.y()) ? 0 : 1;
-  return failure(
-      "typing error", {point.line},
-      fmt::format("line {}: {} is {:.0f} mm too {}: {} where the other points say {:.3f}. A typing "
-                  "error?",
-                  point.line, axis == 0 ? "x_m" : "y_m", 1e3 * std::abs(off_m[axis]),
-                  off_m[axis] > 0.0 ? "large" : "small", point.position_m[axis],
-                  outlier.expected_m[axis]));
+  return failure("typing error", {point.line},
+                 fmt::format("line {}: {} is {:.0f} mm too {}: {} where the other points say "
+                             "{:.3f}. {}",
+                             point.line, axis == 0 ? "x_m" : "y_m", 1e3 * std::abs(off_m[axis]),
+                             off_m[axis] > 0.0 ? "large" : "small", point.position_m[axis],
+                             outlier.expected_m[axis], guess));
 }
 
-std::optional<Finding> undone_slip(const FieldPoint& point, const Outlier& outlier) {
+std::optional<Finding> undone_slip(const FieldPoints& points, const Outlier& outlier) {
+  const FieldPoint& point = points.points[outlier.index];
+  const bool is_outside = is_outside_of_others(points, outlier.index);
   const Change* best = nullptr;
   double least_m = outlier.tolerance_m;
   for (const Change& change : changes()) {
+    if (change.is_unit && !is_outside) continue;
     const double left_m = (change.applied(point.position_m) - outlier.expected_m).norm();
     if (left_m > least_m) continue;
     least_m = left_m;
     best = &change;
   }
   if (!best) return std::nullopt;
-  return failure("typing error", {point.line},
-                 fmt::format("line {}: {}.", point.line, best->words));
+  return typing_error(point, outlier, fmt::format("Probably {}.", best->words));
 }
 
 /// Another row, itself right, has exactly this place.
@@ -218,10 +234,10 @@ std::vector<Finding> swapped_pairs(const FieldPoints& points, std::vector<Outlie
 
 Finding explanation(const FieldPoints& points, const Outlier& outlier,
                     const std::vector<Outlier>& all) {
-  const FieldPoint& point = points.points[outlier.index];
-  if (auto slip = undone_slip(point, outlier)) return *slip;
+  if (auto slip = undone_slip(points, outlier)) return *slip;
   if (auto copy = copied_place(points, outlier.index, all)) return *copy;
-  Finding finding = typing_error(point, outlier);
+  Finding finding = typing_error(points.points[outlier.index], outlier,
+                                 "A typing error, or another point's pixel?");
   if (outlier.distance_px < kSurelyTyped_px) finding.grade = Grade::kWarn;
   return finding;
 }

@@ -13,8 +13,11 @@
 namespace nadir::calibration {
 namespace {
 
-constexpr int kColumns = 13;
-constexpr int kRows = 10;
+constexpr int kColumns = 17;
+constexpr int kRows = 13;
+/// The grid reaches beyond the points' box by this share of its sides: near by, the field itself
+/// says best how the model goes wrong there.
+constexpr double kMargin = 0.3;
 /// Lengths tried: from the points' spacing to far beyond the image, where a field is nearly one
 /// more term of the polynomial.
 constexpr double kShortestOfSpacing = 0.7;
@@ -299,23 +302,25 @@ void add_grid_error(const PixelBox& box, const ResidualField& field,
 ResidualEstimate estimate_residual_field(const FitResiduals& fit,
                                          const std::optional<Eigen::Vector2d>& stated_variance_m2) {
   const ResidualField field(fit, stated_variance_m2);
+  const Eigen::Vector2d margin_px = kMargin * (fit.box.high_px - fit.box.low_px);
+  const PixelBox box{fit.box.low_px - margin_px, fit.box.high_px + margin_px};
   std::vector<LackOfFitNode> nodes;
   for (int row = 0; row < kRows; ++row) {
     for (int column = 0; column < kColumns; ++column) {
-      nodes.push_back(field.at(grid_pixel(fit.box, column, row)));
+      nodes.push_back(field.at(grid_pixel(box, column, row)));
     }
   }
-  add_grid_error(fit.box, field, &nodes);
+  add_grid_error(box, field, &nodes);
   const Eigen::Vector2d noise_m2 = stated_variance_m2.value_or(field.noise_variance_m2());
   if (!stated_variance_m2) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const auto row = static_cast<int>(i) / kColumns;
       const auto column = static_cast<int>(i) % kColumns;
-      const Eigen::Vector2d scale = fit.noise_scale(grid_pixel(fit.box, column, row));
+      const Eigen::Vector2d scale = fit.noise_scale(grid_pixel(box, column, row));
       nodes[i].variance_m2 += noise_m2.cwiseProduct(scale.cwiseAbs2());
     }
   }
-  return {LackOfFit(fit.box, kColumns, kRows, std::move(nodes)), noise_m2};
+  return {LackOfFit(box, kColumns, kRows, std::move(nodes)), noise_m2};
 }
 
 }  // namespace nadir::calibration

@@ -99,6 +99,41 @@ TEST_F(CalibrateCommand, FieldWritesToStdoutAndJsonToAFile) {
   EXPECT_THAT(json.at("remarks").at(0).get<std::string>(), StartsWith("no noise is stated"));
 }
 
+TEST_F(CalibrateCommand, FieldFitsEveryModelAndTheBest) {
+  for (const char* model :
+       {"polynomial3", "polynomial4", "homography", "radial", "radial2", "auto"}) {
+    const Outcome outcome =
+        field({"--height", "0", "-o", output_, "--model", model, "--pixel-noise", "0.2"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::string expected = model == std::string("auto") ? "polynomial2" : model;
+    EXPECT_EQ(model_name(load_calibration(output_).map.kind()), expected);
+    EXPECT_THAT(outcome.err, HasSubstr(expected + " on 42 points"));
+  }
+}
+
+TEST_F(CalibrateCommand, FieldWritesNothingForWrongPointsUnlessForced) {
+  std::mt19937_64 random(62);
+  FieldPoints points = with_noise(grid_points(8, 7, quadratic_truth), 0.2, 0.0, random);
+  points.points[10].position_m.y() -= 0.1;
+  const std::string wrong = folder_.write("wrong.csv", csv(points));
+  const std::string json_file = folder_.path() / "wrong.json";
+  std::vector<std::string> arguments = {
+      "field", wrong, "--height", "0", "--json", json_file, "-o", output_, "--pixel-noise", "0.2"};
+  const Outcome refused = run(arguments);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_FALSE(std::filesystem::exists(output_));
+  EXPECT_THAT(refused.err, StartsWith("FAIL: polynomial2 on 56 points"));
+  EXPECT_THAT(refused.err, HasSubstr("FAIL: line 12: y_m is 1"));
+  EXPECT_THAT(refused.err, HasSubstr("is not written; correct the points, or insist with --force"));
+  std::ifstream stream(json_file);
+  const auto json = nlohmann::json::parse(stream);
+  EXPECT_EQ(json.at("grade"), "FAIL");
+  EXPECT_EQ(json.at("findings").at(0).at("lines").at(0), 12);
+  arguments.emplace_back("--force");
+  EXPECT_EQ(run(arguments).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(output_));
+}
+
 TEST_F(CalibrateCommand, ValidateReportsWhatTheContractSays) {
   ASSERT_EQ(field({"--height", "0.12", "-o", output_, "--pixel-noise", "0.2"}).code, 0);
   const Outcome outcome = run({"validate", output_, points_});
@@ -126,9 +161,14 @@ TEST_F(CalibrateCommand, RefusesWrongUsageWithOneLine) {
   expect_refusal(field({"--height", "0.1"}), "--output");
   expect_refusal(field({"--height", "nan", "-o", output_}), "'nan' is not a number from 0 to 100");
   expect_refusal(field({"--height", "-1", "-o", output_}), "--height");
-  expect_refusal(field({"--height", "0.1", "-o", output_, "--model", "radial"}),
-                 "this version of nadir fits polynomial2, not 'radial'");
-  expect_refusal(field({"--height", "0.1", "-o", output_, "--report", "r.html"}), "--report");
+  expect_refusal(field({"--height", "0.1", "-o", output_, "--model", "radiant"}),
+                 "'radiant' is none of polynomial2");
+  expect_refusal(field({"--height", "0.1", "-o", output_, "--camera-height", "3"}),
+                 "--camera-height and --nadir belong together");
+  expect_refusal(field({"--height", "4", "-o", output_, "--camera-height", "3", "--nadir", "0,0"}),
+                 "--camera-height is not above --height");
+  expect_refusal(field({"--height", "0", "-o", output_, "--camera-height", "3", "--nadir", "0;0"}),
+                 "--nadir is '0;0'; write it like 1.5,-0.25");
   expect_refusal(field({"--height", "0.1", "-o", output_, "--image-size", "1280"}),
                  "--image-size is '1280'; write it like 1280x1024");
   expect_refusal(field({"--height", "0.1", "-o", "-", "--json", "-"}), "both want stdout");
