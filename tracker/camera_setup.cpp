@@ -28,6 +28,25 @@ void check_teams(const vision::MarkerLayout& layout, const std::filesystem::path
   }
 }
 
+void check_landmarks(const CameraConfig& config, const PipelineSetup& setup) {
+  for (const Landmark& landmark : config.landmarks) {
+    bool known = false;
+    std::string names;
+    for (const vision::MarkerLayout& layout : setup.layouts) {
+      for (const vision::Team& team : layout.teams) {
+        known = known || team.name == landmark.team;
+        names += (names.empty() ? "" : ", ") + team.name;
+      }
+    }
+    if (known) continue;
+    throw vision::InputError({config.name, 0, 0},
+                             fmt::format("a landmark is of team '{}', which no layout of the "
+                                         "camera has",
+                                         landmark.team),
+                             "choose one of " + names);
+  }
+}
+
 }  // namespace
 
 PipelineSetup load_pipeline_setup(const CameraConfig& config, const TrackSettings& tracks) {
@@ -42,6 +61,7 @@ PipelineSetup load_pipeline_setup(const CameraConfig& config, const TrackSetting
     setup.layouts.push_back(vision::load_marker_layout(file));
     check_teams(setup.layouts.back(), file);
   }
+  check_landmarks(config, setup);
   if (!config.colours.empty()) setup.colours = vision::load_colour_classes(config.colours);
   return setup;
 }

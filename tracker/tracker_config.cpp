@@ -48,6 +48,20 @@ std::string resolve_source(const fs::path& folder, const std::string& source) {
   return source.find(':') != std::string::npos ? source : resolve(folder, source).string();
 }
 
+std::vector<Landmark> read_landmarks(const YamlMap& camera, const std::string& name) {
+  constexpr vision::ValidRange kPlace_m{-1e4, 1e4};
+  std::vector<Landmark> landmarks;
+  if (!camera.has("landmarks")) return landmarks;
+  for (const YamlMap& map : camera.maps("landmarks")) {
+    landmarks.push_back({.camera = name,
+                         .team = map.text("team"),
+                         .id = map.integer_or("id", -1, {0.0, 1e6}),
+                         .place_m = {map.number("x_m", kPlace_m), map.number("y_m", kPlace_m)}});
+    map.finish();
+  }
+  return landmarks;
+}
+
 CameraConfig read_camera(const YamlMap& map, const fs::path& folder, std::size_t index) {
   CameraConfig camera;
   camera.name = map.text_or("name", fmt::format("cam{}", index));
@@ -61,6 +75,7 @@ CameraConfig read_camera(const YamlMap& map, const fs::path& folder, std::size_t
   camera.noise = resolve(folder, map.text_or("noise", ""));
   const std::string& by_file = kVarianceNames[camera.noise.empty() ? 0 : 2];
   camera.variance = variance_from_name(map.choice_or("variance", by_file, kVarianceNames));
+  camera.landmarks = read_landmarks(map, camera.name);
   map.finish();
   return camera;
 }
@@ -94,6 +109,12 @@ void put_camera(std::string& yaml, const CameraConfig& camera) {
   fmt::format_to(out, "    rate_hz: {}\n    colours: {}\n    noise: {}\n    variance: {}\n",
                  camera.rate_hz, quoted(camera.colours.string()), quoted(camera.noise.string()),
                  kVarianceNames[static_cast<std::size_t>(camera.variance)]);
+  if (!camera.landmarks.empty()) yaml += "    landmarks:\n";
+  for (const Landmark& landmark : camera.landmarks) {
+    const std::string id = landmark.id < 0 ? "" : fmt::format("id: {}, ", landmark.id);
+    fmt::format_to(out, "      - {{team: {}, {}x_m: {}, y_m: {}}}\n", quoted(landmark.team), id,
+                   landmark.place_m.x(), landmark.place_m.y());
+  }
 }
 
 }  // namespace

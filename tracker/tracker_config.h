@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tracker/landmark_monitor.h"
 #include "tracker/robot_tracks.h"
 
 namespace nadir::tracker {
@@ -38,6 +39,7 @@ struct CameraConfig {
   std::filesystem::path colours;  ///< empty: the default colours
   std::filesystem::path noise;  ///< variance against pixel count; goes with kTable and only with it
   VarianceModel variance = VarianceModel::kPixels;
+  std::vector<Landmark> landmarks;  ///< that stand where they were surveyed; may be empty
 };
 
 /// Everything that a tracker can be told.

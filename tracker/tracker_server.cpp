@@ -19,10 +19,18 @@ constexpr std::size_t kQueueLength = 8;
 constexpr std::chrono::milliseconds kPollInterval{50};
 constexpr std::chrono::milliseconds kDiscoveryTime{400};
 
+std::vector<Landmark> landmarks_of(const TrackerConfig& config) {
+  std::vector<Landmark> all;
+  for (const CameraConfig& camera : config.cameras) {
+    all.insert(all.end(), camera.landmarks.begin(), camera.landmarks.end());
+  }
+  return all;
+}
+
 }  // namespace
 
 TrackerServer::TrackerServer(const TrackerConfig& config, Console& console)
-    : config_(config), console_(console), queue_(kQueueLength) {
+    : config_(config), console_(console), queue_(kQueueLength), landmarks_(landmarks_of(config)) {
   const bool draws = !config_.overlay.empty();
   CameraThread::Shared shared{.console = &console_,
                               .publisher = nullptr,
@@ -122,6 +130,7 @@ void TrackerServer::write(const FinishedFrame& frame) {
                                          config_.poses.string()));
   }
   if (!overlays_.empty()) write_overlay(frame);
+  for (const std::string& line : landmarks_.update(frame.report)) console_.line(line);
   show_progress(frame.report);
 }
 

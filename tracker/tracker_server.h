@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tracker/camera_thread.h"
+#include "tracker/landmark_monitor.h"
 #include "tracker/overlay.h"
 #include "tracker/pose_log.h"
 #include "tracker/tracker_config.h"
@@ -15,7 +16,7 @@
 namespace nadir::tracker {
 
 /// The cameras of a configuration, one thread each, and in the caller's thread what is written of
-/// them: the pose log, the overlay pictures, the progress line.
+/// them: the pose log, the overlay pictures, the progress line, warnings of landmarks that move.
 class TrackerServer {
  public:
   /// Opens and checks everything that is named. Throws InputError or WireError.
@@ -46,6 +47,7 @@ class TrackerServer {
   std::optional<ClockAnswerer> clock_answerer_;
   std::optional<PoseLog> log_;
   std::vector<Overlay> overlays_;
+  LandmarkMonitor landmarks_;
   std::vector<std::unique_ptr<CameraThread>> cameras_;  // last: their threads use all the others
   std::uint64_t written_frames_ = 0;
   MessageLimiter progress_limit_{std::chrono::milliseconds(200)};
