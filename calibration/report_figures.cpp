@@ -28,10 +28,14 @@ PlotFigure field_figure(const ReportNumbers& numbers) {
           true};
 }
 
-/// v points down, as in the image.
+/// v points down, as in the image. With a rim, for points may lie on the border.
 PlotFigure image_figure(const ReportNumbers& numbers) {
-  return {{"u in the image, px", numbers.image_low_px.x(), numbers.image_high_px.x()},
-          {"v in the image, px", numbers.image_high_px.y(), numbers.image_low_px.y()},
+  constexpr double kRim = 0.02;
+  const Eigen::Vector2d rim = kRim * (numbers.image_high_px - numbers.image_low_px);
+  const Eigen::Vector2d low = numbers.image_low_px - rim;
+  const Eigen::Vector2d high = numbers.image_high_px + rim;
+  return {{"u in the image, px", low.x(), high.x()},
+          {"v in the image, px", high.y(), low.y()},
           kWidth,
           0.0,
           true};
@@ -61,6 +65,13 @@ Corners hull_on_field(const Calibration& calibration) {
     }
   }
   return corners;
+}
+
+/// White dashes on a shadow: seen on every colour.
+void draw_hull(PlotFigure& figure, const Calibration& calibration) {
+  const Corners hull = hull_on_field(calibration);
+  figure.polygon(hull, "hull shadow");
+  figure.polygon(hull, "hull");
 }
 
 /// Cells of the field with a colour for each value, which has no colour where it is negative.
@@ -93,6 +104,28 @@ std::string point_name(const FieldPoint& point, std::size_t index) {
   return point.line > 0 ? fmt::format("line {}", point.line) : fmt::format("point {}", index + 1);
 }
 
+/// Names beside points, towards the middle; none where one stands already.
+void name_points(PlotFigure& figure, const FieldPoints& points,
+                 const std::vector<std::size_t>& indices, double middle_x_m) {
+  constexpr double kWidth_px = 60.0;
+  constexpr double kHeight_px = 14.0;
+  std::vector<Eigen::Vector2d> taken;
+  for (const std::size_t i : indices) {
+    const Eigen::Vector2d& place = points.points[i].position_m;
+    const Eigen::Vector2d at(figure.x(place.x()), figure.y(place.y()));
+    const bool is_free =
+        std::none_of(taken.begin(), taken.end(), [&](const Eigen::Vector2d& other) {
+          return std::abs(at.x() - other.x()) < kWidth_px &&
+                 std::abs(at.y() - other.y()) < kHeight_px;
+        });
+    if (!is_free) continue;
+    taken.push_back(at);
+    const bool is_right = place.x() > middle_x_m;
+    figure.label(place.x(), place.y(), is_right ? -6.0 : 6.0, 4.0, point_name(points.points[i], i),
+                 is_right ? "end" : "start");
+  }
+}
+
 }  // namespace
 
 std::string residual_arrows(const FieldPoints& points, const FieldResult& result,
@@ -108,12 +141,7 @@ std::string residual_arrows(const FieldPoints& points, const FieldResult& result
     const bool is_worst = std::find(worst.begin(), worst.end(), i) != worst.end();
     figure.arrow(place.x(), place.y(), arrow.x(), arrow.y(), is_worst ? "arrow hot" : "arrow");
   }
-  for (const std::size_t i : worst) {
-    const Eigen::Vector2d& place = points.points[i].position_m;
-    const bool is_right = place.x() > 0.5 * (numbers.low_m.x() + numbers.high_m.x());
-    figure.label(place.x(), place.y(), is_right ? -6.0 : 6.0, 4.0, point_name(points.points[i], i),
-                 is_right ? "end" : "start");
-  }
+  name_points(figure, points, worst, 0.5 * (numbers.low_m.x() + numbers.high_m.x()));
   const double key_m = round_below(1.6 * rms_m);
   figure.length_key(key_m * enlarged * figure.scale_x(),
                     fmt::format("{:g} mm of residual", 1e3 * key_m));
@@ -128,6 +156,7 @@ std::string residual_directions(const FieldPoints& points, const FieldResult& re
     figure.dot(points.points[i].pixel.x(), points.points[i].pixel.y(), kDot,
                direction_colour(std::atan2(error.y(), error.x())));
   }
+  figure.direction_key();
   return figure.svg("direction of the residuals over the image");
 }
 
@@ -179,7 +208,7 @@ std::string error_map(const FieldPoints& points, const FieldResult& result,
   const double highest_mm = 1e3 * std::max(1.6 * numbers.inside_rms_m, 1.05 * numbers.inside_max_m);
   const double top_mm = std::max(highest_mm, 1e-6);
   draw_cells(figure, numbers, top_mm, [](const FieldCell& cell) { return 1e3 * cell.sigma_m; });
-  figure.polygon(hull_on_field(result.calibration), "hull");
+  draw_hull(figure, result.calibration);
   for (const FieldPoint& point : points.points) {
     figure.ring(point.position_m.x(), point.position_m.y(), 1.2, "speck");
   }
@@ -194,7 +223,7 @@ std::string half_difference_map(const FieldResult& result, const ReportNumbers& 
   const double top_mm = std::max(1.05 * inside_mm, 1e-6);
   draw_cells(figure, numbers, top_mm,
              [](const FieldCell& cell) { return 1e3 * cell.half_difference_m.norm(); });
-  figure.polygon(hull_on_field(result.calibration), "hull");
+  draw_hull(figure, result.calibration);
   figure.colour_key(0.0, top_mm, "mm");
   if (numbers.halves) {
     figure.note(fmt::format("RMS {:.3g} mm; noise alone: {:.3g} mm", 1e3 * numbers.halves->rms_m,

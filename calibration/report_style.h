@@ -49,7 +49,9 @@ svg .label { fill: var(--hot); font-weight: 600; paint-order: stroke; stroke: va
 .arrow.hot { stroke: var(--hot); stroke-width: 1.8; }
 .bar { fill: var(--bar); stroke: var(--paper); stroke-width: 0.5; }
 .curve { fill: none; stroke: var(--curve); stroke-width: 2.2; }
+.cell { shape-rendering: crispEdges; }
 .hull { fill: none; stroke: #ffffff; stroke-width: 1.6; stroke-dasharray: 6 4; }
+.hull.shadow { stroke: #000000; stroke-opacity: 0.4; stroke-width: 3.4; stroke-dasharray: none; }
 .hull.dark { stroke: var(--ink); stroke-width: 1.3; }
 .speck { fill: #ffffff; fill-opacity: 0.75; } .point { fill: var(--arrow); }
 .covered { fill: var(--covered); stroke: var(--paper); }
@@ -59,7 +61,7 @@ svg .label { fill: var(--hot); font-weight: 600; paint-order: stroke; stroke: va
   --line: #bbbbbb; --grid: #dddddd; --bar: #7fa7d6; --curve: #c2410c; --hot: #c2261a;
   --arrow: #2c4a7c; --covered: #dcebdc; }
   body { print-color-adjust: exact; -webkit-print-color-adjust: exact; } main { padding: 0; }
-  .tables > div { break-inside: avoid; } @page { size: A4; margin: 10mm; } }
+  .tables > div { break-inside: avoid; } @page { size: A4 landscape; margin: 10mm; } }
 )css";
 
 /// Patterns that the figures fill with.

@@ -130,8 +130,10 @@ void PlotFigure::cell(double x_low, double y_low, double x_high, double y_high,
   const double top = std::min(y(y_low), y(y_high));
   // A little wider than it is, or hair lines of paper shine through.
   marks_ += fmt::format(
-      "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"/>\n", left,
-      top, std::abs(x(x_high) - x(x_low)) + 0.35, std::abs(y(y_high) - y(y_low)) + 0.35, fill);
+      "<rect class=\"cell\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
+      "fill=\"{}\"/>\n",
+      left, top, std::abs(x(x_high) - x(x_low)) + 0.35, std::abs(y(y_high) - y(y_low)) + 0.35,
+      fill);
 }
 
 void PlotFigure::dot(double at_x, double at_y, double radius, const std::string& fill) {
@@ -199,6 +201,29 @@ void PlotFigure::length_key(double length, const std::string& text) {
       "<path class=\"arrow\" d=\"M{0:.1f} {2:.1f}L{1:.1f} {2:.1f}M{1:.1f} {2:.1f}l-5 -3M{1:.1f} "
       "{2:.1f}l-5 3\"/>\n<text class=\"quiet\" x=\"{3:.1f}\" y=\"{4:.1f}\">{5}</text>\n",
       left_, left_ + length, y_at, left_ + length + 7.0, y_at + 4.0, html_escaped(text));
+}
+
+void PlotFigure::direction_key() {
+  constexpr int kWedges = 36;
+  constexpr double kRadius = 20.0;
+  const double middle_x = right_ + 0.5 * kRight;
+  const double middle_y = top_ + kRadius + 18.0;
+  const auto rim = [&](int wedge) {
+    const double angle = 2.0 * std::numbers::pi * (wedge - 0.5) / kWedges;
+    return fmt::format("{:.1f} {:.1f}", middle_x + kRadius * std::cos(angle),
+                       middle_y - kRadius * std::sin(angle));
+  };
+  for (int wedge = 0; wedge < kWedges; ++wedge) {
+    margin_ += fmt::format("<path fill=\"{}\" d=\"M{:.1f} {:.1f}L{}L{}Z\"/>\n",
+                           direction_colour(2.0 * std::numbers::pi * wedge / kWedges), middle_x,
+                           middle_y, rim(wedge), rim(wedge + 1));
+  }
+  const auto name = [&](double dx, double dy, const char* text) {
+    margin_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
+                           middle_x + dx, middle_y + dy, text);
+  };
+  name(kRadius + 10.0, 4.0, "+x");
+  name(0.0, -kRadius - 6.0, "+y");
 }
 
 void PlotFigure::colour_key(double low, double high, const std::string& name) {

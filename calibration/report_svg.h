@@ -55,7 +55,9 @@ class PlotFigure {
   void note(const std::string& text);
   /// An arrow of a known length in figure pixels above the plot's left end: "5 mm".
   void length_key(double length, const std::string& text);
-  /// A strip right of the plot from `low` to `high`, heat_colour or direction_colour.
+  /// A wheel of direction_colour right of the plot, with +x to the right and +y up.
+  void direction_key();
+  /// A strip of heat_colour right of the plot from `low` to `high`.
   void colour_key(double low, double high, const std::string& name);
 
   /// The finished <svg> element.
