@@ -125,7 +125,7 @@ struct Change {
 
 /// Slips that one change undoes.
 const std::vector<Change>& changes() {
-  static const std::vector<Change> kChanges = {
+  static const std::vector<Change> known_changes = {
       {"x_m and y_m are swapped", [](const Vector2d& p) { return Vector2d(p.y(), p.x()); }},
       {"x_m has the wrong sign", [](const Vector2d& p) { return Vector2d(-p.x(), p.y()); }},
       {"y_m has the wrong sign", [](const Vector2d& p) { return Vector2d(p.x(), -p.y()); }},
@@ -141,7 +141,7 @@ const std::vector<Change>& changes() {
       {"y_m is in centimetres", [](const Vector2d& p) { return Vector2d(p.x(), p.y() / 1e2); },
        true},
   };
-  return kChanges;
+  return known_changes;
 }
 
 /// Farther from the origin in x or y than all other points.

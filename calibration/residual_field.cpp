@@ -13,11 +13,15 @@
 namespace nadir::calibration {
 namespace {
 
-constexpr int kColumns = 17;
-constexpr int kRows = 13;
-/// The grid reaches beyond the points' box by this share of its sides: near by, the field itself
-/// says best how the model goes wrong there.
-constexpr double kMargin = 0.3;
+/// Cells of the grid in the points' box, and beyond it on each side: near by, the field itself says
+/// best how the model goes wrong there. The border of the box is one of nodes, so that what lies
+/// beyond it does not reach into it.
+constexpr int kInnerColumns = 12;
+constexpr int kInnerRows = 9;
+constexpr int kOuterColumns = 3;
+constexpr int kOuterRows = 2;
+constexpr int kColumns = kInnerColumns + 2 * kOuterColumns + 1;
+constexpr int kRows = kInnerRows + 2 * kOuterRows + 1;
 /// Lengths tried: from the points' spacing to far beyond the image, where a field is nearly one
 /// more term of the polynomial.
 constexpr double kShortestOfSpacing = 0.7;
@@ -302,7 +306,9 @@ void add_grid_error(const PixelBox& box, const ResidualField& field,
 ResidualEstimate estimate_residual_field(const FitResiduals& fit,
                                          const std::optional<Eigen::Vector2d>& stated_variance_m2) {
   const ResidualField field(fit, stated_variance_m2);
-  const Eigen::Vector2d margin_px = kMargin * (fit.box.high_px - fit.box.low_px);
+  const Eigen::Vector2d side_px = fit.box.high_px - fit.box.low_px;
+  const Eigen::Vector2d margin_px(side_px.x() * kOuterColumns / kInnerColumns,
+                                  side_px.y() * kOuterRows / kInnerRows);
   const PixelBox box{fit.box.low_px - margin_px, fit.box.high_px + margin_px};
   std::vector<LackOfFitNode> nodes;
   for (int row = 0; row < kRows; ++row) {
