@@ -42,9 +42,9 @@ double reach_m(const MarkerLayout& layout) {
 
 /// Of a camera that looks straight down: u along x, v against y.
 PixelScaleGrid uniform_scale(const cv::Size& size, double pixels_per_metre) {
-  const Eigen::Matrix2d jacobian =
+  Eigen::Matrix2d jacobian =
       Eigen::Vector2d(1.0 / pixels_per_metre, -1.0 / pixels_per_metre).asDiagonal();
-  return {size.width, size.height, [jacobian](const vision::PixelPoint&) { return jacobian; }};
+  return {size.width, size.height, [&jacobian](const vision::PixelPoint&) { return jacobian; }};
 }
 
 struct Trial {

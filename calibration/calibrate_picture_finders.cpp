@@ -160,6 +160,7 @@ std::vector<FieldPoint> tag_points(const std::vector<Picture>& pictures,
                      "check family and ids; tags must be 14 px wide or more");
   }
   std::vector<FieldPoint> points;
+  points.reserve(seen.size());
   for (const auto& [id, places] : seen) {
     points.push_back(
         {mean_place(places, fmt::format("tag {}", id), kStill_px), surveyed.places_m.at(id), 0});
@@ -194,6 +195,7 @@ std::vector<FieldPoint> checkerboard_points(const std::vector<Picture>& pictures
   for (int row = 0; row < size.rows; ++row) {
     for (int column = 0; column < size.columns; ++column) {
       std::vector<PixelPoint> places;
+      places.reserve(boards.size());
       for (const BoardCorners& board : boards) places.push_back(board.at(column, row));
       points.push_back({mean_place(places, "the board", kStill_px),
                         origin.place_m + options.square_m * (column * columns_m + row * rows_m),

@@ -22,9 +22,9 @@ bool is_picture(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  static const std::vector<std::string> kEndings = {".png", ".jpg", ".jpeg", ".bmp",
-                                                    ".ppm", ".tif", ".tiff"};
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+  static const std::vector<std::string> endings = {".png", ".jpg", ".jpeg", ".bmp",
+                                                   ".ppm", ".tif", ".tiff"};
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
 std::vector<Picture> load_pictures(const std::string& folder) {

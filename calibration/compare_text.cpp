@@ -16,7 +16,9 @@ constexpr int kShownEvery = 3;  // of the grid's columns and rows
 std::string number_map(const MapComparison& comparison) {
   std::string text = "  difference in mm over the image (u to the right, v down)\n      u px";
   const auto at = [&](int column, int row) -> const PixelDifference& {
-    return comparison.differences[static_cast<std::size_t>(row * comparison.columns + column)];
+    return comparison
+        .differences[static_cast<std::size_t>(row) * static_cast<std::size_t>(comparison.columns) +
+                     static_cast<std::size_t>(column)];
   };
   for (int column = 1; column < comparison.columns; column += kShownEvery) {
     text += fmt::format("{:8.0f}", at(column, 0).pixel.x());

@@ -20,10 +20,10 @@ constexpr const char* kRemedy = "give what nadir-tracker --poses wrote";
 
 Eigen::Matrix3d read_covariance(const Json& numbers) {
   Eigen::Matrix3d covariance;
+  std::size_t next = 0;  // row by row
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      covariance(row, column) =
-          numbers.at(static_cast<std::size_t>(3 * row + column)).get<double>();
+      covariance(row, column) = numbers.at(next++).get<double>();
     }
   }
   return covariance;

@@ -259,7 +259,7 @@ double median_spacing(const std::vector<cv::Point2f>& points) {
 }  // namespace
 
 std::optional<BoardCorners> find_checkerboard(const cv::Mat& picture, const BoardSize& size) {
-  const auto wanted = static_cast<std::size_t>(size.columns * size.rows);
+  const auto wanted = static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows);
   const cv::Mat grey = grey_of(picture);
   std::vector<cv::Point2f> found = candidates(grey);
   if (found.size() < wanted) return std::nullopt;
@@ -267,6 +267,7 @@ std::optional<BoardCorners> find_checkerboard(const cv::Mat& picture, const Boar
   cv::cornerSubPix(grey, found, {half, half}, {-1, -1},
                    {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 1e-3});
   std::vector<PixelPoint> places;
+  places.reserve(found.size());
   for (const cv::Point2f& point : found) places.push_back(pixel(point));
   Grid grid(places);
   // A seed on clutter leads to a small grid; a few dozen of them meet the board, if there is one.

@@ -21,7 +21,8 @@ struct BoardCorners {
   std::vector<vision::PixelPoint> corners;
 
   const vision::PixelPoint& at(int column, int row) const {
-    return corners[static_cast<std::size_t>(row * size.columns + column)];
+    return corners[static_cast<std::size_t>(row) * static_cast<std::size_t>(size.columns) +
+                   static_cast<std::size_t>(column)];
   }
 };
 

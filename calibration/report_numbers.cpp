@@ -146,7 +146,9 @@ void count_coverage(const FieldPoints& points, const Calibration& calibration,
     const Eigen::Vector2d place = (point.pixel - numbers.image_low_px).cwiseQuotient(cell);
     const int column = std::clamp(static_cast<int>(place.x()), 0, kCoverageColumns - 1);
     const int row = std::clamp(static_cast<int>(place.y()), 0, kCoverageRows - 1);
-    ++numbers.coverage[static_cast<std::size_t>(row * kCoverageColumns + column)].points;
+    const std::size_t cell_index =
+        static_cast<std::size_t>(row) * kCoverageColumns + static_cast<std::size_t>(column);
+    ++numbers.coverage[cell_index].points;
   }
   for (const CoverageCell& each : numbers.coverage) numbers.empty_cells += each.points == 0 ? 1 : 0;
   numbers.hull_share = calibration.map.support().hull.area_px2() / (extent.x() * extent.y());

@@ -72,12 +72,13 @@ cv::Mat grey_of(const cv::Mat& bgr) {
 }  // namespace
 
 const std::vector<std::string>& tag_families() {
-  static const std::vector<std::string> kNames = [] {
-    std::vector<std::string> names;
-    for (const Family& each : kFamilies) names.emplace_back(each.name);
-    return names;
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    all.reserve(kFamilies.size());
+    for (const Family& each : kFamilies) all.emplace_back(each.name);
+    return all;
   }();
-  return kNames;
+  return names;
 }
 
 struct TagDetector::State {

@@ -14,8 +14,8 @@ namespace nadir::calibration {
 using Shade = std::function<double(const Eigen::Vector2d& place_m)>;
 
 /// The field through a camera whose pixels show the places of `truth`: rays x rays of them a pixel,
-/// then blur of 0.7 px and Gaussian noise of 3 grey levels. Few rays make edges rough: 4 move them
-/// by about 0.05 px. CV_8UC3.
+/// then blur of 0.7 px and Gaussian noise of 3 grey levels. Few rays make edges rough, by a few
+/// hundredths of a pixel. CV_8UC3.
 cv::Mat drawn_picture(const cv::Size& size, const Truth& truth, const Shade& shade,
                       std::uint64_t seed, int rays = 4);
 
