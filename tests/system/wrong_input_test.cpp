@@ -179,7 +179,7 @@ identities: {0: [pink, green], 1: [green, pink], 2: [pink, green]}
 TEST_F(WrongInput, CalibrationOfAnotherVersionIsRefused) {
   const fs::path other = scratch_.write(
       "other.yaml",
-      replaced(read_text(calibration_), "nadir_calibration: 1", "nadir_calibration: 99"));
+      replaced(read_text(calibration_), "nadir_calibration: 2", "nadir_calibration: 99"));
   expect_tracker_refuses(kClip / "frames", kLeague, other, {other.string() + ":", "99"});
   ChildProcess validate(kBin / "nadir-calibrate", {"validate", other, kClip / "points.csv"});
   expect_one_line(validate, {other.string() + ":", "99"});
