@@ -113,7 +113,7 @@ bool is_covariance(const Eigen::MatrixXd& matrix) {
 
 Eigen::MatrixXd read_information(const YamlMap& map, int count) {
   const char* const key = "information_inverse";
-  const Eigen::MatrixXd information = read_square(map, key, count);
+  Eigen::MatrixXd information = read_square(map, key, count);
   if (!is_covariance(information)) {
     throw map.error(key, fmt::format("'{}' is no covariance", key), kAgain);
   }
@@ -205,6 +205,7 @@ int read_version(const YamlMap& file) {
 
 ModelKind read_model(const YamlMap& file, int version) {
   std::vector<std::string> names;
+  names.reserve(kAllModels.size());
   for (const ModelKind model : kAllModels) names.emplace_back(model_name(model));
   if (version == 1) names = {"polynomial2"};
   return *model_from_name(file.choice("model", names));

@@ -1,5 +1,6 @@
 #include "calibration/fit.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -86,6 +87,16 @@ ResidualEstimate split_residuals(const PlaneMap& map, const FieldPoints& points,
   return estimate_residual_field(fit, stated_m2);
 }
 
+/// inverse spread inverse, by way of a root of the spread: what is nearly singular stays symmetric
+/// and without negative eigenvalues.
+Eigen::MatrixXd sandwich(const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& spread) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(spread);
+  const Eigen::VectorXd roots = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd root = inverse * (solver.eigenvectors() * roots.asDiagonal());
+  const Eigen::MatrixXd product = root * root.transpose();
+  return 0.5 * (product + product.transpose());
+}
+
 /// M^-1 (sum of w phi phi^T) M^-1, w: the variance of a point against the mean one.
 PolynomialMap weighted(const PolynomialMap& map, const FieldPoints& points,
                        const std::vector<Eigen::Matrix2d>& covariances_m2, double mean_m2) {
@@ -97,7 +108,7 @@ PolynomialMap weighted(const PolynomialMap& map, const FieldPoints& points,
         polynomial_basis((points.points[i].pixel - p.centre_px) / p.scale_px, p.order);
     spread += 0.5 * covariances_m2[i].trace() / mean_m2 * phi * phi.transpose();
   }
-  p.information_inverse = p.information_inverse * spread * p.information_inverse;
+  p.information_inverse = sandwich(p.information_inverse, spread);
   return PolynomialMap(p);
 }
 
@@ -118,8 +129,7 @@ RadialMap weighted(const RadialMap& map, const FieldPoints& points,
               in_image;
     scale_m2 += 0.5 * jacobian.squaredNorm() / static_cast<double>(points.points.size());
   }
-  p.information_inverse =
-      scale_m2 * scale_m2 * p.information_inverse * spread * p.information_inverse;
+  p.information_inverse = scale_m2 * scale_m2 * sandwich(p.information_inverse, spread);
   return RadialMap(p);
 }
 

@@ -40,12 +40,14 @@ double sigma(std::vector<double> distances, ModelKind model) {
 
 std::vector<double> distances_px(const std::vector<PointResidual>& residuals) {
   std::vector<double> distances;
+  distances.reserve(residuals.size());
   for (const PointResidual& residual : residuals) distances.push_back(residual.distance_px);
   return distances;
 }
 
 std::vector<double> distances_m(const std::vector<PointResidual>& residuals) {
   std::vector<double> distances;
+  distances.reserve(residuals.size());
   for (const PointResidual& residual : residuals) distances.push_back(residual.distance_m);
   return distances;
 }
@@ -55,6 +57,7 @@ std::vector<double> distance_weights(const std::vector<PointResidual>& residuals
   const std::vector<double> distances = distances_m(residuals);
   const double usual_m = std::max(median(distances), 1e-12);
   std::vector<double> weights;
+  weights.reserve(distances.size());
   for (const double distance_m : distances)
     weights.push_back(usual_m / std::max(distance_m, usual_m));
   return weights;
@@ -64,6 +67,7 @@ std::vector<double> tukey_weights(const std::vector<PointResidual>& residuals, M
   const std::vector<double> distances = distances_m(residuals);
   const double reach_m = kTukeyReach * std::max(sigma(distances, model), 1e-12);
   std::vector<double> weights;
+  weights.reserve(distances.size());
   for (const double distance_m : distances) {
     const double t = std::min(1.0, distance_m / reach_m);
     weights.push_back(std::max(kLeastWeight, std::pow(1.0 - t * t, 2)));

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <string>
 
+#include "calibration/calibration_file.h"
 #include "calibration/fit.h"
 #include "tests/calibration/camera_points.h"
+#include "tests/calibration/synthetic_points.h"
+#include "tests/vision/scratch_folder.h"
 
 namespace nadir::calibration {
 namespace {
@@ -163,6 +166,21 @@ TEST(RadialMap, NeedsNoDistortionToFindItsLensCentre) {
   const PlaneMap map = fit_map(ModelKind::kRadial2, survey(camera), experiment_options());
   EXPECT_LT(true_rms_m(map, camera), 1e-9);
   EXPECT_TRUE(map.sampling_covariance_m2({300.0, 200.0}).allFinite());
+}
+
+TEST(RadialMap, CanBeReadAgainWhereItsCentreIsHardlyKnown) {
+  // Without distortion the lens centre's variance is huge, and its covariance nearly singular.
+  const vision::ScratchFolder folder;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    std::mt19937_64 random(seed);
+    const FieldPoints points = with_noise(survey(experiment_camera(0.0), 5, 4), 0.2, 0.0, random);
+    for (const StatedNoise& noise : {StatedNoise{}, StatedNoise{0.2, {}}, StatedNoise{0.2, 0.01}}) {
+      const FieldFit fit = fit_field(ModelKind::kRadial2, points, noise, experiment_options());
+      const std::string text = calibration_yaml(
+          {.map = fit.map, .points_box = pixel_box(points), .residuals = fit.residuals});
+      EXPECT_EQ(calibration_yaml(load_calibration(folder.write("cal.yaml", text))), text);
+    }
+  }
 }
 
 TEST(ModelKind, NamesAndNumbersBelongTogether) {
