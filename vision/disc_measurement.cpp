@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "vision/disc_ring.h"
+#include "vision/disc_surroundings.h"
 #include "vision/disc_window.h"
 
 namespace nadir::vision {
@@ -14,9 +15,7 @@ namespace {
 // what lies behind a thin rim.
 constexpr ShareLimits kFindLimits{0.10F, 0.60F};
 constexpr ShareLimits kMeasureLimits{0.30F, 0.70F};
-// Radius from which every second row finds a disc. (To measure it they are too few: 0.04 px of
-// error.)
-constexpr float kFindBySecondRow_px = 4.0F;
+constexpr int kPatience = 3;  // iterations after which every row is looked at all the same
 constexpr int kMostIterations = 8;
 constexpr float kSettledPerRadius = 0.05F;  // a step of this size does not change the colours seen
 constexpr float kSettled_px = 0.3F;
@@ -27,17 +26,21 @@ constexpr int kLeastInside = 6;          // pixels, for statistics of the disc's
 constexpr float kShadingOverScatter = 8.0F;
 // Error in radii per relative change of light over a radius.
 constexpr double kShadingError = 0.025;
-constexpr double kSmallDisc = 22.0;  // pixels: smaller ones have no inside, only an edge
+constexpr double kSmallDisc = 24.0;  // pixels: smaller ones have no inside, only an edge
 
 // Colours of the disc and of what is around it, as seen from the window's present place.
 void read_colours(const cv::Mat& bgr, const LocalScale& scale, DiscWindow& window, Ring& ring,
-                  DiscMeasurement& disc) {
+                  const Bgr* plate, DiscMeasurement& disc) {
   sample_surroundings(bgr, scale, window.centre, window.radius_px, ring);
-  disc.surroundings = median_of_ring(ring);
   disc.colour = middle_colour(bgr, scale, window.centre, window.radius_px);
+  disc.surroundings = surroundings_of(ring, disc.colour, plate);
   window.surroundings = disc.surroundings;
   window.difference = disc.colour - disc.surroundings;
   disc.contrast = window.difference.norm();
+  // Where nothing is known of the plate, a disc may still be far off and its own colour in the
+  // ring.
+  window.share_of = plate != nullptr ? share_function(ring, disc.surroundings, window.difference)
+                                     : Bgr(window.difference / window.difference.squaredNorm());
 }
 
 // Takes over the light's slope as far as it is more than the pixels' scatter would make it.
@@ -52,10 +55,9 @@ void set_shading(const InsideShares& inside, DiscWindow& window) {
 // Scatter of the surroundings' shares, robustly: half the ring may show something else.
 double ring_deviation(const Ring& ring, const DiscWindow& w) {
   std::array<float, kRingSamples> deviation;
-  const Bgr direction = w.difference / w.difference.squaredNorm();
   for (int i = 0; i < kRingSamples; ++i) {
     const Bgr value(ring[0][i], ring[1][i], ring[2][i]);
-    deviation[i] = std::abs(direction.dot(value - w.surroundings));
+    deviation[i] = std::abs(w.share_of.dot(value - w.surroundings));
   }
   const auto middle = deviation.begin() + kRingSamples / 2;
   std::nth_element(deviation.begin(), middle, deviation.end());
@@ -99,13 +101,15 @@ bool reaches_over_border(const cv::Mat& bgr, const DiscWindow& window) {
 
 MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double radius_m,
                             const PixelPoint& start, double sampling_variance_px2,
-                            DiscMeasurement& disc) {
+                            DiscMeasurement& disc, const Bgr* plate) {
   DiscWindow window;
   window.centre = start;
   window.radius_px = static_cast<float>(radius_m) * scale.scale_px_per_m;
   window.to_round = scale.metres_per_pixel * scale.scale_px_per_m;
   window.limits = kFindLimits;
-  window.row_step = window.radius_px > kFindBySecondRow_px ? 2 : 1;
+  // To find a disc, some of its rows are enough. (To measure it they are too few: 0.04 px of
+  // error.)
+  window.row_step = std::max(1, static_cast<int>(std::sqrt(window.radius_px)));
   const double farthest_px = 1.5 * static_cast<double>(window.radius_px) + 1.0;
   WeightSums sums;
   InsideShares inside;
@@ -116,9 +120,10 @@ MeasureOutcome measure_disc(const cv::Mat& bgr, const LocalScale& scale, double 
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     if (reaches_over_border(bgr, window)) return MeasureOutcome::kOutsideImage;
     if (!settled) {  // colours seen from a wrong place are wrong
-      read_colours(bgr, scale, window, ring, disc);
+      read_colours(bgr, scale, window, ring, plate, disc);
       if (disc.contrast < static_cast<double>(kLeastContrast)) return MeasureOutcome::kWeakContrast;
     }
+    if (iteration == kPatience) window.row_step = 1;
     sums = sum_weights(bgr, window);
     if (sums.weight < 1.0F) return MeasureOutcome::kWeakContrast;
     const PixelPoint step(sums.weight_u / sums.weight, sums.weight_v / sums.weight);

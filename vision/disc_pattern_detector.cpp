@@ -1,6 +1,7 @@
 #include "vision/disc_pattern_detector.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -19,6 +20,8 @@ constexpr double kHueHalfWidth_rad = 0.70;
 constexpr float kLeastHueShare = 0.2F;  // of the team's hue in the contrast
 constexpr double kLeastArea = 0.4;      // soft pixel count over expected count
 constexpr double kMostArea = 1.7;
+constexpr double kLeastApart = 0.8;  // two discs' centres, over the sum of their radii
+constexpr std::ptrdiff_t kCacheLineBytes = 64;
 constexpr std::size_t kMostRejections = 256;
 constexpr std::size_t kMostRobots = 256;
 constexpr unsigned kFramesPerMosaicCheck = 16;  // a camera keeps its sensor
@@ -30,6 +33,19 @@ std::vector<ColourScore> centre_scores(const MarkerLayout& layout, const ColourC
     scores.push_back(colour_score(colours, team.centre_colour, kHueHalfWidth_rad));
   }
   return scores;
+}
+
+double radius_px(const DiscObservation& disc) { return std::sqrt(disc.expected_pixels / M_PI); }
+
+bool overlap(const RobotObservation& a, const RobotObservation& b) {
+  for (int i = 0; i < a.disc_count; ++i) {
+    for (int j = 0; j < b.disc_count; ++j) {
+      const double least_px = kLeastApart * (radius_px(a.discs[i]) + radius_px(b.discs[j]));
+      const PixelPoint apart = a.discs[i].centre_px - b.discs[j].centre_px;
+      if (apart.squaredNorm() < least_px * least_px) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -50,6 +66,7 @@ struct DiscPatternDetector::State {
     }
   }
 
+  void fetch_robot(const cv::Mat& bgr, const PixelPoint& place) const;
   void consider(const cv::Mat& bgr, const Seed& seed, DetectionResult& result);
   void reject(DetectionResult& result, const PixelPoint& place, RejectReason reason) const;
   void resolve_shared_discs(DetectionResult& result);
@@ -73,6 +90,22 @@ void DiscPatternDetector::State::reject(DetectionResult& result, const PixelPoin
     result.rejected.push_back({place, reason});
   } else {
     ++result.rejected_not_listed;
+  }
+}
+
+// Asks memory for the pixels that a robot at this place would cover, before they are needed.
+void DiscPatternDetector::State::fetch_robot(const cv::Mat& bgr, const PixelPoint& place) const {
+  const int reach_px = static_cast<int>(std::ceil(reach_m * scale.largest_pixels_per_metre()));
+  const int u = static_cast<int>(place.x());
+  const int v = static_cast<int>(place.y());
+  const std::ptrdiff_t begin = 3 * std::max(0, u - reach_px) / kCacheLineBytes * kCacheLineBytes;
+  const std::ptrdiff_t end = 3 * std::min(bgr.cols, u + reach_px);
+  const int row_end = std::min(bgr.rows, v + reach_px);
+  for (int row = std::max(0, v - reach_px); row < row_end; ++row) {
+    const std::uint8_t* const line = bgr.ptr<std::uint8_t>(row);
+    for (std::ptrdiff_t byte = begin; byte < end; byte += kCacheLineBytes) {
+      __builtin_prefetch(line + byte);
+    }
   }
 }
 
@@ -120,22 +153,16 @@ void DiscPatternDetector::State::consider(const cv::Mat& bgr, const Seed& seed,
   result.robots.push_back(robot);
 }
 
-// A disc can belong to one robot only: the more confident one keeps it.
+// Discs do not overlap: of two robots whose discs would, the more confident one is there.
 void DiscPatternDetector::State::resolve_shared_discs(DetectionResult& result) {
   auto& robots = result.robots;
   shared.assign(robots.size(), 0);
+  const double far_px = 2.0 * reach_m * scale.largest_pixels_per_metre();
   for (std::size_t a = 0; a < robots.size(); ++a) {
     for (std::size_t b = a + 1; b < robots.size(); ++b) {
-      const LocalScale local = local_scale(scale, robots[a].discs[0].centre_px);
-      const double reach_px =
-          0.5 * layout.centre_radius_m * static_cast<double>(local.scale_px_per_m);
-      bool touch = false;
-      for (int i = 0; i < robots[a].disc_count && !touch; ++i) {
-        for (int j = 0; j < robots[b].disc_count && !touch; ++j) {
-          touch = (robots[a].discs[i].centre_px - robots[b].discs[j].centre_px).norm() < reach_px;
-        }
-      }
-      if (touch) shared[robots[a].confidence < robots[b].confidence ? a : b] = 1;
+      const PixelPoint apart = robots[a].discs[0].centre_px - robots[b].discs[0].centre_px;
+      if (apart.squaredNorm() > far_px * far_px || !overlap(robots[a], robots[b])) continue;
+      shared[robots[a].confidence < robots[b].confidence ? a : b] = 1;
     }
   }
   std::size_t kept = 0;
@@ -208,7 +235,10 @@ void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
         looks_demosaiced(bgr) ? kDemosaicedSamplingVariance_px2 : kSamplingVariance_px2;
   }
   state.search.scan(bgr);
-  state.search.for_each_seed([&](const Seed& seed) { state.consider(bgr, seed, result); });
+  state.search.for_each_seed([&](const Seed& seed, const PixelPoint& next) {
+    state.fetch_robot(bgr, next);
+    state.consider(bgr, seed, result);
+  });
   state.resolve_shared_discs(result);
   state.tidy_rejected(result);
 }

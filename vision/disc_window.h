@@ -14,8 +14,8 @@ struct ShareLimits {
   float high;
 };
 
-/// Where a disc is looked for, and what its pixels look like. A pixel's share in the disc is its
-/// value projected on the line from the surroundings' colour to the disc's: 0 there, 1 in the disc.
+/// Where a disc is looked for, and what its pixels look like. A pixel's share in the disc is a
+/// linear function of its value: 0 in the surroundings, 1 in the disc.
 struct DiscWindow {
   PixelPoint centre = PixelPoint::Zero();
   float radius_px = 0.0F;
@@ -23,8 +23,9 @@ struct DiscWindow {
   Eigen::Matrix2f to_round;
   Bgr surroundings = Bgr::Zero();
   Bgr difference = Bgr::Zero();  ///< of the disc's colour from its surroundings, not zero
+  Bgr share_of = Bgr::Zero();    ///< share = share_of . (value - surroundings); of difference: 1
   ShareLimits limits{0.0F, 1.0F};
-  int row_step = 1;      ///< 2: every second row is enough for a first approach
+  int row_step = 1;      ///< 2: every second row, ... are enough for a first approach
   float slope_u = 0.0F;  ///< of the light across the disc, relative change per pixel
   float slope_v = 0.0F;
 };

@@ -15,15 +15,14 @@ constexpr float kLeastHueShare = 0.12F;
 constexpr float kLeastHue = 6.0F;  // grey levels
 // Soft pixel count over expected count.
 constexpr double kLeastArea = 0.4;
-constexpr double kMostArea = 1.9;
+constexpr double kMostArea = 2.0;
+constexpr int kMostNeighbours = 3;           // on each side of a heading
 constexpr double kTolerancePerRadius = 0.2;  // of the layout's fit
 constexpr double kTolerance_px = 0.3;
 
-Bgr pixel_at(const cv::Mat& bgr, float u_px, float v_px) {
-  const int u = static_cast<int>(u_px + 0.5F);
-  const int v = static_cast<int>(v_px + 0.5F);
-  const std::uint8_t* pixel = bgr.ptr<std::uint8_t>(v) + 3 * u;
-  return {static_cast<float>(pixel[0]), static_cast<float>(pixel[1]), static_cast<float>(pixel[2])};
+Eigen::Vector2f turned(const Eigen::Vector2f& direction, const Eigen::Vector2f& p) {
+  return {direction.x() * p.x() - direction.y() * p.y(),
+          direction.y() * p.x() + direction.x() * p.y()};
 }
 
 }  // namespace
@@ -59,64 +58,77 @@ PatternMatch::PatternMatch(const MarkerLayout& layout, const ColourClasses& colo
     const double heading_rad = 2.0 * M_PI * i / count;
     headings_.emplace_back(std::cos(heading_rad), std::sin(heading_rad));
   }
+  for (const OuterDisc& outer : outer_) {
+    std::vector<Eigen::Vector2f> offsets_m;
+    for (const Eigen::Vector2f& heading : headings_) {
+      offsets_m.push_back(turned(heading, outer.position_m));
+    }
+    probes_.emplace_back(offsets_m, outer.scores);
+  }
+  evidence_.resize(headings_.size());
 }
 
+// The headings that are tried lie so close that the right one has neighbours that have all their
+// discs too, if only near the rims: the mean of these neighbours is nearer to the truth than any.
 PatternMatch::Heading PatternMatch::best_heading(const cv::Mat& bgr, const LocalScale& scale,
-                                                 const DiscMeasurement& centre) const {
-  const Eigen::Vector2f origin = centre.centre_px.cast<float>();
-  const auto right = static_cast<float>(bgr.cols - 1);
-  const auto bottom = static_cast<float>(bgr.rows - 1);
-  Heading best;
-  float best_sum = 0.0F;
-  for (int heading = 0; heading < static_cast<int>(headings_.size()); ++heading) {
-    const Eigen::Vector2f d = headings_[heading];
-    float worst = 1e9F;
-    float sum = 0.0F;
-    for (const OuterDisc& outer : outer_) {
-      const Eigen::Vector2f& p = outer.position_m;
-      const Eigen::Vector2f place =
-          origin + scale.pixels_per_metre * Eigen::Vector2f(d.x() * p.x() - d.y() * p.y(),
-                                                            d.y() * p.x() + d.x() * p.y());
-      if (!(place.x() >= 0.0F && place.y() >= 0.0F && place.x() <= right && place.y() <= bottom)) {
-        worst = -1.0F;
-        best.any_outside = true;
-        break;
-      }
-      const Bgr difference = pixel_at(bgr, place.x(), place.y()) - centre.surroundings;
-      float hue = -1e9F;
-      for (const ColourScore& colour : outer.scores) hue = std::max(hue, colour(difference));
-      worst = std::min(worst, hue);
-      sum += hue;
-      if (worst < kLeastHue) break;
-    }
-    // The worst disc decides whether the heading can be; the sum which of those fits best.
-    if (worst >= kLeastHue && worst + sum > best.score + best_sum) {
-      best.index = heading;
-      best.score = worst;
-      best_sum = sum;
+                                                 const DiscMeasurement& centre) {
+  Heading heading;
+  const std::size_t count = headings_.size();
+  std::fill(evidence_.begin(), evidence_.end(), Evidence{1e9F, 0.0F});
+  for (HueProbe& probe : probes_) {
+    const std::vector<float>& hues = probe.look(bgr, scale, centre.centre_px, centre.surroundings);
+    for (std::size_t i = 0; i < count; ++i) {
+      evidence_[i].worst = std::min(evidence_[i].worst, hues[i]);
+      evidence_[i].sum += hues[i];
     }
   }
-  return best;
+  // The worst disc decides whether the heading can be; the sum which of those fits best.
+  std::size_t best = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    heading.any_outside = heading.any_outside || evidence_[i].worst <= HueProbe::kOutside / 2;
+    if (evidence_[i].worst < kLeastHue) continue;
+    if (best == count ||
+        evidence_[i].worst + evidence_[i].sum > evidence_[best].worst + evidence_[best].sum) {
+      best = i;
+    }
+  }
+  if (best == count) return heading;
+  heading.score = evidence_[best].worst;
+  heading.direction = heading.score * headings_[best];
+  const auto add_neighbours = [&](std::size_t step) {
+    std::size_t i = (best + step) % count;
+    for (int n = 0; n < kMostNeighbours && evidence_[i].worst >= kLeastHue; ++n) {
+      heading.direction += evidence_[i].worst * headings_[i];
+      i = (i + step) % count;
+    }
+  };
+  add_neighbours(1);
+  add_neighbours(count - 1);
+  heading.direction.normalize();
+  return heading;
 }
 
-bool PatternMatch::measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale, int heading,
-                                       double sampling_variance_px2,
+// Every disc that was measured tells the direction better to the next.
+bool PatternMatch::measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale,
+                                       Eigen::Vector2f direction, double sampling_variance_px2,
                                        std::array<DiscMeasurement, kMaxDiscs>& discs,
                                        RejectReason& reason) const {
-  const Eigen::Vector2f d = headings_[heading];
+  Eigen::Vector2f direction_sum = Eigen::Vector2f::Zero();
   for (std::size_t i = 0; i < outer_.size(); ++i) {
     const Eigen::Vector2f& p = outer_[i].position_m;
-    const Eigen::Vector2f offset_px =
-        scale.pixels_per_metre *
-        Eigen::Vector2f(d.x() * p.x() - d.y() * p.y(), d.y() * p.x() + d.x() * p.y());
+    const Eigen::Vector2f offset_px = scale.pixels_per_metre * turned(direction, p);
     DiscMeasurement& disc = discs[i + 1];
     const PixelPoint start = discs[0].centre_px + offset_px.cast<double>();
-    const MeasureOutcome outcome =
-        measure_disc(bgr, scale, outer_[i].radius_m, start, sampling_variance_px2, disc);
+    const MeasureOutcome outcome = measure_disc(
+        bgr, scale, outer_[i].radius_m, start, sampling_variance_px2, disc, &discs[0].surroundings);
     if (outcome == MeasureOutcome::kOutsideImage) reason = RejectReason::kOutsideImage;
     if (outcome != MeasureOutcome::kMeasured) return false;
     const double area = disc.pixels / disc.expected_pixels;
     if (area < kLeastArea || area > kMostArea) return false;
+    const Eigen::Vector2f seen_m =
+        scale.metres_per_pixel * (disc.centre_px - discs[0].centre_px).cast<float>();
+    direction_sum += turned({p.x(), -p.y()}, seen_m);
+    direction = direction_sum.normalized();
   }
   return true;
 }
@@ -194,16 +206,17 @@ double PatternMatch::fit_error_px(const LocalScale& scale, const RobotObservatio
 
 bool PatternMatch::match(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre,
                          int team, double sampling_variance_px2, RobotObservation& robot,
-                         RejectReason& reason) const {
+                         RejectReason& reason) {
   const Heading heading = best_heading(bgr, scale, centre);
   reason = heading.any_outside ? RejectReason::kOutsideImage : RejectReason::kNoHeadingMarker;
-  if (heading.index < 0 || heading.score < kLeastHueShare * static_cast<float>(centre.contrast)) {
+  if (heading.score <= 0.0F ||
+      heading.score < kLeastHueShare * static_cast<float>(centre.contrast)) {
     return false;
   }
   std::array<DiscMeasurement, kMaxDiscs> discs;
   discs[0] = centre;
   reason = RejectReason::kPatternDoesNotFit;
-  if (!measure_outer_discs(bgr, scale, heading.index, sampling_variance_px2, discs, reason)) {
+  if (!measure_outer_discs(bgr, scale, heading.direction, sampling_variance_px2, discs, reason)) {
     return false;
   }
 

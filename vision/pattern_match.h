@@ -6,6 +6,7 @@
 
 #include "vision/colour_classes.h"
 #include "vision/disc_measurement.h"
+#include "vision/hue_probe.h"
 #include "vision/marker_layout.h"
 #include "vision/marker_observation.h"
 
@@ -20,7 +21,7 @@ class PatternMatch {
   /// `centre` is a measured disc in the colour of team `team`; `sampling_variance_px2` as in
   /// measure_disc. Fills `robot` and returns true, or says why not.
   bool match(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre, int team,
-             double sampling_variance_px2, RobotObservation& robot, RejectReason& reason) const;
+             double sampling_variance_px2, RobotObservation& robot, RejectReason& reason);
 
  private:
   struct OuterDisc {
@@ -29,9 +30,14 @@ class PatternMatch {
     std::vector<Colour> colours;  ///< that this disc may have
     std::vector<ColourScore> scores;
   };
+  /// What single pixels say of one heading.
+  struct Evidence {
+    float worst = 0.0F;  ///< score of its worst disc
+    float sum = 0.0F;
+  };
   struct Heading {
-    int index = -1;            ///< into headings_, -1: none has all its discs
-    float score = 0.0F;        ///< of its worst disc
+    Eigen::Vector2f direction = Eigen::Vector2f::Zero();  ///< (cos, sin)
+    float score = 0.0F;        ///< of its worst disc; 0: no heading has all its discs
     bool any_outside = false;  ///< some heading has a disc out of the image
   };
   struct Reading {
@@ -40,10 +46,9 @@ class PatternMatch {
     float margin = 1.0F;  ///< 0 to 1: how far the second best is behind
   };
 
-  Heading best_heading(const cv::Mat& bgr, const LocalScale& scale,
-                       const DiscMeasurement& centre) const;
-  /// Those of disc 1 and up, around disc 0.
-  bool measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale, int heading,
+  Heading best_heading(const cv::Mat& bgr, const LocalScale& scale, const DiscMeasurement& centre);
+  /// Those of disc 1 and up, around disc 0, from about this direction of the robot's front on.
+  bool measure_outer_discs(const cv::Mat& bgr, const LocalScale& scale, Eigen::Vector2f direction,
                            double sampling_variance_px2,
                            std::array<DiscMeasurement, kMaxDiscs>& discs,
                            RejectReason& reason) const;
@@ -54,6 +59,8 @@ class PatternMatch {
   MarkerLayout layout_;
   std::vector<OuterDisc> outer_;
   std::vector<Eigen::Vector2f> headings_;  ///< (cos, sin) of the headings that are tried
+  std::vector<HueProbe> probes_;           ///< one for each outer disc, an offset for each heading
+  std::vector<Evidence> evidence_;         ///< for each heading, about the present centre
   double tolerance_m_;                     ///< of the fit of the discs to the layout
 };
 

@@ -9,10 +9,13 @@
 namespace nadir::vision {
 namespace {
 
-// Steps over the smallest disc's radius: a disc's centre is then at most 0.68 radii from a grid
-// point, which lies well inside the edge.
-constexpr double kRowStepPerRadius = 1.1;
-constexpr double kColumnStepPerRadius = 0.8;
+// No place is further from a grid point than the smallest disc's radius less this: well inside the
+// blurred edge, also where a JPEG file blurs colours over two pixels. Tiny discs are all edge:
+// there a share of the radius serves.
+constexpr double kInside_px = 1.8;
+constexpr double kInsidePerRadius = 0.55;
+// What a grid point costs: as much as so many pixels of its row to be fetched.
+constexpr double kPointCost_px = 8.0;
 constexpr double kBlur_px = 1.5;
 constexpr int kFixedPointShift = 5;
 // A grid point must have this much of the wanted hue: grey levels, after sixteenths of its
@@ -23,15 +26,14 @@ constexpr int kLeastDifference = 10;  // from its surroundings: more than noise 
 constexpr std::int16_t kNothing = -1000;
 // Darkness counts from here down: nothing that is brighter, in grey levels, may be a black disc.
 constexpr std::int16_t kBrightestBlack = 96;
+constexpr int kBlock = 16;  // grid points that are scored at once
 constexpr int kCellsAtOnce = 8;
 // Neighbours, out of 8, that may have the same hue: another robot's disc, but not a line, which
 // goes on in two directions.
 constexpr int kMostAlikeNeighbours = 1;
 constexpr std::size_t kCacheLineBytes = 64;
-
-int grid_step_px(double step_per_radius, double radius_px) {
-  return std::max(1, static_cast<int>(step_per_radius * radius_px));
-}
+constexpr int kRowsAhead = 2;
+constexpr std::size_t kPointsAtOnce = 16;
 
 std::array<std::int16_t, 3> fixed_point(const Bgr& coefficients) {
   std::array<std::int16_t, 3> fixed{};
@@ -44,25 +46,49 @@ std::array<std::int16_t, 3> fixed_point(const Bgr& coefficients) {
 
 }  // namespace
 
+double SparseSearch::Steps::farthest_px() const { return 0.5 * std::hypot(column_px, row_px); }
+
+// Of all grids that are fine enough the one that costs least per pixel of the image.
+SparseSearch::Steps SparseSearch::steps_for(double smallest_radius_px) {
+  const double farthest_px =
+      std::max(kInsidePerRadius * smallest_radius_px, smallest_radius_px - kInside_px);
+  Steps best{1, 1};
+  double best_cost = 1.0 + kPointCost_px;
+  for (int column_px = 1; column_px < 2.0 * farthest_px; ++column_px) {
+    const double half_row_px = std::sqrt(farthest_px * farthest_px - 0.25 * column_px * column_px);
+    const int row_px = static_cast<int>(2.0 * half_row_px);
+    const double cost = (1.0 + kPointCost_px / column_px) / row_px;
+    if (row_px >= 1 && cost < best_cost) {
+      best = {column_px, row_px};
+      best_cost = cost;
+    }
+  }
+  return best;
+}
+
 SparseSearch::Axis::Axis(int size_px, int step, double surroundings_px)
     : step_px(step),
       first_px(std::min(step / 2, (size_px - 1) / 2)),
       count((size_px - first_px + step - 1) / step),
+      padded_count((count + kBlock - 1) / kBlock * kBlock),
       margin(static_cast<int>(std::ceil(surroundings_px / step))) {}
 
 SparseSearch::SparseSearch(int width_px, int height_px, double smallest_radius_px,
                            double largest_radius_px, const std::vector<ColourScore>& colours)
+    : SparseSearch(width_px, height_px, steps_for(smallest_radius_px), largest_radius_px, colours) {
+}
+
+SparseSearch::SparseSearch(int width_px, int height_px, Steps steps, double largest_radius_px,
+                           const std::vector<ColourScore>& colours)
     // The surroundings must lie outside the disc from wherever in it the grid point is.
-    : u_(width_px, grid_step_px(kColumnStepPerRadius, smallest_radius_px),
-         1.68 * largest_radius_px + kBlur_px),
-      v_(height_px, grid_step_px(kRowStepPerRadius, smallest_radius_px),
-         1.68 * largest_radius_px + kBlur_px),
-      stride_(u_.count + 2 * u_.margin),
+    : u_(width_px, steps.column_px, steps.farthest_px() + largest_radius_px + kBlur_px),
+      v_(height_px, steps.row_px, steps.farthest_px() + largest_radius_px + kBlur_px),
+      stride_(u_.padded_count + 2 * u_.margin),
       plane_size_(static_cast<std::size_t>(stride_) *
                   static_cast<std::size_t>(v_.count + 2 * v_.margin)),
       scores_(plane_size_ * colours.size(), kNothing),
       best_of_row_(static_cast<std::size_t>(v_.count) * colours.size(), kNothing),
-      words_(static_cast<std::size_t>(u_.count)),
+      words_(static_cast<std::size_t>(u_.padded_count)),
       blue_(words_.size()),
       green_(words_.size()),
       red_(words_.size()) {
@@ -73,6 +99,8 @@ SparseSearch::SparseSearch(int width_px, int height_px, double smallest_radius_p
   surroundings_ = {
       -u_.margin,        u_.margin,        -up, up, -up_aslant - aside, -up_aslant + aside,
       up_aslant - aside, up_aslant + aside};
+  cells_.reserve(static_cast<std::size_t>(u_.count) * static_cast<std::size_t>(v_.count) *
+                 colours.size());
   for (const ColourScore& colour : colours) {
     colours_.push_back({fixed_point(colour.along), fixed_point(colour.across),
                         fixed_point(colour.second), !colour.second.isZero(),
@@ -81,27 +109,32 @@ SparseSearch::SparseSearch(int width_px, int height_px, double smallest_radius_p
 }
 
 void SparseSearch::scan(const cv::Mat& bgr) {
-  const std::size_t row_bytes = 3 * static_cast<std::size_t>(bgr.cols);
   for (int row = 0; row < v_.count; ++row) {
-    // Rows in between are skipped, which the processor does not foresee: it is told the next one.
-    const int next_row = std::min(row + 2, v_.count - 1);
-    const std::uint8_t* const next = bgr.ptr<std::uint8_t>(v_.first_px + next_row * v_.step_px);
-    for (std::size_t byte = 0; byte < row_bytes; byte += kCacheLineBytes) {
-      __builtin_prefetch(next + byte);
-    }
-    gather_row(bgr.ptr<std::uint8_t>(v_.first_px + row * v_.step_px));
+    const int to_come = std::min(row + kRowsAhead, v_.count - 1);
+    gather_row(bgr.ptr<std::uint8_t>(v_.first_px + row * v_.step_px),
+               bgr.ptr<std::uint8_t>(v_.first_px + to_come * v_.step_px));
     score_row(row);
   }
 }
 
-void SparseSearch::gather_row(const std::uint8_t* row_bgr) {
-  const std::uint8_t* pixel = row_bgr + 3 * u_.first_px;
-  const int stride_bytes = 3 * u_.step_px;
-  const std::size_t last = words_.size() - 1;
-  for (std::size_t i = 0; i < last; ++i, pixel += stride_bytes) {
-    std::memcpy(&words_[i], pixel, 4);  // the fourth byte belongs to the next pixel
+// Rows in between are skipped, which the processor does not foresee: it is told which one is to
+// come.
+void SparseSearch::gather_row(const std::uint8_t* row_bgr, const std::uint8_t* row_to_come) {
+  const std::size_t stride_bytes = 3 * static_cast<std::size_t>(u_.step_px);
+  const std::size_t last = static_cast<std::size_t>(u_.count) - 1;
+  std::int32_t* __restrict words = words_.data();
+  const std::uint8_t* pixel = row_bgr + 3 * static_cast<std::size_t>(u_.first_px);
+  const std::uint8_t* to_come = row_to_come;
+  std::size_t i = 0;
+  for (; i + kPointsAtOnce <= last; i += kPointsAtOnce) {
+    const std::uint8_t* const line_end = to_come + kPointsAtOnce * stride_bytes;
+    for (; to_come < line_end; to_come += kCacheLineBytes) __builtin_prefetch(to_come);
+    for (std::size_t k = 0; k < kPointsAtOnce; ++k, pixel += stride_bytes) {
+      std::memcpy(words + i + k, pixel, 4);  // the fourth byte belongs to the next pixel
+    }
   }
-  words_[last] = pixel[0] | pixel[1] << 8 | pixel[2] << 16;
+  for (; i < last; ++i, pixel += stride_bytes) std::memcpy(words + i, pixel, 4);
+  words[last] = pixel[0] | pixel[1] << 8 | pixel[2] << 16;
 }
 
 NADIR_VECTOR_CLONES
@@ -110,13 +143,13 @@ void SparseSearch::score_row(int row) {
   std::int16_t* __restrict b = blue_.data();
   std::int16_t* __restrict g = green_.data();
   std::int16_t* __restrict r = red_.data();
-  const int count = u_.count;
+  // 16-bit throughout, and whole blocks: as many grid points at once as the processor can.
+  const int count = u_.padded_count / kBlock * kBlock;
   for (int i = 0; i < count; ++i) {
     b[i] = static_cast<std::int16_t>(words[i] & 255);
     g[i] = static_cast<std::int16_t>(words[i] >> 8 & 255);
     r[i] = static_cast<std::int16_t>(words[i] >> 16 & 255);
   }
-  // 16-bit throughout: eight or sixteen grid points at once.
   const auto dot = [](const std::array<std::int16_t, 3>& w, std::int16_t x, std::int16_t y,
                       std::int16_t z) {
     return static_cast<std::int16_t>(static_cast<std::int16_t>(w[0] * x + w[1] * y + w[2] * z) >>
@@ -129,46 +162,60 @@ void SparseSearch::score_row(int row) {
     std::int16_t best = kNothing;
     for (int i = 0; i < count; ++i) {
       const std::int16_t brightest = std::max(std::max(b[i], g[i]), r[i]);
+      const auto share = static_cast<std::int16_t>(kBrightnessShare * brightest);
       out[i] = static_cast<std::int16_t>(dot(f.along, b[i], g[i], r[i]) -
-                                         magnitude(dot(f.across, b[i], g[i], r[i])) -
-                                         (kBrightnessShare * brightest >> 4) + f.offset);
+                                         magnitude(dot(f.across, b[i], g[i], r[i])) - (share >> 4) +
+                                         f.offset);
       best = std::max(best, out[i]);
     }
     if (f.has_second) {  // white and black: no hue at all
-      for (int i = 0; i < count; ++i) {
+      for (int i = 0; i < u_.count; ++i) {
         out[i] = static_cast<std::int16_t>(out[i] - magnitude(dot(f.second, b[i], g[i], r[i])));
       }
     }
+    std::fill(out + u_.count, out + count, kNothing);
     best_of_row_[row_index(colour, row)] = best;
   }
 }
 
-int SparseSearch::next_seed(int colour, int row, int from) const {
-  if (best_of_row_[row_index(colour, row)] < kLeastScore) return u_.count;
-  const std::int16_t* const cells = &scores_[cell_index(colour, row, 0)];
-  int column = from;
-  while (column < u_.count) {
-    if (column + kCellsAtOnce <= u_.count) {  // most of the grid has nothing of the hue
-      std::int16_t largest = cells[column];
-      for (int i = 1; i < kCellsAtOnce; ++i) largest = std::max(largest, cells[column + i]);
+void SparseSearch::list_cells() {
+  cells_.clear();
+  for (int colour = 0; colour < static_cast<int>(colours_.size()); ++colour) {
+    for (int row = 0; row < v_.count; ++row) {
+      if (best_of_row_[row_index(colour, row)] >= kLeastScore) list_cells_of_row(colour, row);
+    }
+  }
+}
+
+void SparseSearch::list_cells_of_row(int colour, int row) {
+  const std::int16_t* const scores = &scores_[cell_index(colour, row, 0)];
+  for (int column = 0; column < u_.count;) {
+    const int end = std::min(column + kCellsAtOnce, u_.count);
+    if (end - column == kCellsAtOnce) {  // most of the grid has nothing of the hue
+      std::int16_t largest = scores[column];
+      for (int i = 1; i < kCellsAtOnce; ++i) largest = std::max(largest, scores[column + i]);
       if (largest < kLeastScore) {
-        column += kCellsAtOnce;
+        column = end;
         continue;
       }
     }
-    const int end = std::min(column + kCellsAtOnce, u_.count);
     for (; column < end; ++column) {
-      if (cells[column] >= kLeastScore && stands_out(cells + column)) return column;
+      const Cell cell{colour, row, column};
+      if (is_seed(cell)) cells_.push_back(cell);
     }
   }
-  return u_.count;
 }
 
-bool SparseSearch::stands_out(const std::int16_t* cell) const {
-  const int different = std::min(*cell / 2, *cell - kLeastDifference);
+bool SparseSearch::is_seed(const Cell& cell) const {
+  const std::int16_t* const score = &scores_[cell_index(cell.colour, cell.row, cell.column)];
+  return *score >= kLeastScore && stands_out(score);
+}
+
+bool SparseSearch::stands_out(const std::int16_t* score) const {
+  const int different = std::min(*score / 2, *score - kLeastDifference);
   int alike = 0;
   for (const int offset : surroundings_) {
-    alike += cell[offset] > different ? 1 : 0;
+    alike += score[offset] > different ? 1 : 0;
     if (alike > kMostAlikeNeighbours) return false;
   }
   return true;
@@ -176,8 +223,8 @@ bool SparseSearch::stands_out(const std::int16_t* cell) const {
 
 // Mean of the grid points about one that stands out, weighted with their score: nearer to the
 // disc's centre.
-PixelPoint SparseSearch::middle_of_neighbours(int colour, int row, int column) const {
-  const std::int16_t* const centre = &scores_[cell_index(colour, row, column)];
+PixelPoint SparseSearch::middle_of_neighbours(const Cell& cell) const {
+  const std::int16_t* const centre = &scores_[cell_index(cell.colour, cell.row, cell.column)];
   int sum = 0;
   int sum_column = 0;
   int sum_row = 0;
@@ -189,8 +236,19 @@ PixelPoint SparseSearch::middle_of_neighbours(int colour, int row, int column) c
       sum_row += weight * dr;
     }
   }
-  return {u_.pixel(column + static_cast<double>(sum_column) / sum),
-          v_.pixel(row + static_cast<double>(sum_row) / sum)};
+  return {u_.pixel(cell.column + static_cast<double>(sum_column) / sum),
+          v_.pixel(cell.row + static_cast<double>(sum_row) / sum)};
+}
+
+// The first cell that lies in something else and is not marked yet.
+PixelPoint SparseSearch::place_after(std::vector<Cell>::const_iterator cell) const {
+  const auto next = std::find_if(cell, cells_.end(), [&](const Cell& later) {
+    const bool same_thing = std::abs(later.row - cell->row) <= v_.margin &&
+                            std::abs(later.column - cell->column) <= u_.margin;
+    return !same_thing && scores_[cell_index(later.colour, later.row, later.column)] >= kLeastScore;
+  });
+  const Cell& found = next == cells_.end() ? *cell : *next;
+  return {u_.pixel(found.column), v_.pixel(found.row)};
 }
 
 void SparseSearch::mark(const PixelPoint& centre, double radius_px, int colour) {

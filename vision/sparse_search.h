@@ -17,9 +17,9 @@ struct Seed {
 };
 
 /// Looks at a grid of single pixels, so far apart that every disc of the wanted size covers at
-/// least one grid point well inside its edge, and keeps those that have the wanted hue while their
-/// surroundings, more than a disc away, have not. Rows between the grid's rows are never read; they
-/// lie further apart than the columns, for memory is fetched along rows.
+/// least one grid point inside its blurred edge, and keeps those that have the wanted hue while
+/// their surroundings, more than a disc away, have not. Rows between the grid's rows are never
+/// read; they lie further apart than the columns, for memory is fetched along rows.
 class SparseSearch {
  public:
   /// `smallest_radius_px`, `largest_radius_px`: of the wanted discs in this image.
@@ -29,16 +29,14 @@ class SparseSearch {
   /// Reads the grid of a CV_8UC3 image of the size given at construction.
   void scan(const cv::Mat& bgr);
 
-  /// Calls visit(seed) for every grid point that may lie in a disc and is not marked.
+  /// Calls visit(seed, next) for every grid point that may lie in a disc and is not marked. `next`
+  /// is about where the next thing will be looked at: time to have its pixels fetched.
   template <typename Visit>
   void for_each_seed(Visit&& visit) {
-    for (int colour = 0; colour < static_cast<int>(colours_.size()); ++colour) {
-      for (int row = 0; row < v_.count; ++row) {
-        for (int column = next_seed(colour, row, 0); column < u_.count;
-             column = next_seed(colour, row, column + 1)) {
-          visit(Seed{middle_of_neighbours(colour, row, column), colour});
-        }
-      }
+    list_cells();
+    for (auto cell = cells_.begin(); cell != cells_.end(); ++cell) {
+      if (!is_seed(*cell)) continue;
+      visit(Seed{middle_of_neighbours(*cell), cell->colour}, place_after(cell));
     }
   }
 
@@ -46,6 +44,11 @@ class SparseSearch {
   void mark(const PixelPoint& centre, double radius_px, int colour);
 
  private:
+  struct Steps {
+    int column_px;
+    int row_px;
+    double farthest_px() const;  ///< of any place from its nearest grid point
+  };
   /// The grid along one axis of the image.
   struct Axis {
     Axis(int size_px, int step, double surroundings_px);
@@ -55,7 +58,13 @@ class SparseSearch {
     int step_px;
     int first_px;
     int count;
-    int margin;  ///< cells of padding on each side = distance of the surroundings
+    int padded_count;  ///< to whole blocks of grid points that are scored at once
+    int margin;        ///< cells of padding on each side = distance of the surroundings
+  };
+  struct Cell {
+    int colour;
+    int row;
+    int column;
   };
   struct FixedPointScore {
     std::array<std::int16_t, 3> along;
@@ -66,11 +75,17 @@ class SparseSearch {
         offset;  ///< darkness, black's score, is negative: it needs a grey level to count from
   };
 
-  void gather_row(const std::uint8_t* row_bgr);
+  static Steps steps_for(double smallest_radius_px);
+  SparseSearch(int width_px, int height_px, Steps steps, double largest_radius_px,
+               const std::vector<ColourScore>& colours);
+  void gather_row(const std::uint8_t* row_bgr, const std::uint8_t* row_to_come);
   void score_row(int row);
-  int next_seed(int colour, int row, int from) const;
-  bool stands_out(const std::int16_t* cell) const;
-  PixelPoint middle_of_neighbours(int colour, int row, int column) const;
+  void list_cells();
+  void list_cells_of_row(int colour, int row);
+  bool is_seed(const Cell& cell) const;
+  bool stands_out(const std::int16_t* score) const;
+  PixelPoint middle_of_neighbours(const Cell& cell) const;
+  PixelPoint place_after(std::vector<Cell>::const_iterator cell) const;
   std::size_t cell_index(int colour, int row, int column) const {
     return static_cast<std::size_t>(colour) * plane_size_ +
            static_cast<std::size_t>(row + v_.margin) * static_cast<std::size_t>(stride_) +
@@ -89,6 +104,7 @@ class SparseSearch {
   std::vector<FixedPointScore> colours_;
   std::vector<std::int16_t> scores_;       ///< one padded plane per colour
   std::vector<std::int16_t> best_of_row_;  ///< largest score of each row of each plane
+  std::vector<Cell> cells_;                ///< that may lie in a disc, row by row
   std::vector<std::int32_t> words_;        ///< the present row's grid points
   std::vector<std::int16_t> blue_;
   std::vector<std::int16_t> green_;

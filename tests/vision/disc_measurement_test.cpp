@@ -118,6 +118,40 @@ TEST_P(MeasuredDisc, AStartUpToOneRadiusAwayLeadsToTheSameCentre) {
   }
 }
 
+// A disc near the rim of its plate, with a bright floor beyond: the floor passes for a share in the
+// disc on the straight line between the two colours, and would pull the centre towards it.
+TEST(MeasuredDisc, AFloorBeyondTheRimDoesNotPullTheCentre) {
+  for (const double radius_px : {2.1, 2.5, 3.5, 5.0}) {
+    MarkerLayout layout = lone_disc_layout(radius_px / kScale_px_per_m, Colour::kYellow);
+    layout.outer = {{{2.4 * layout.centre_radius_m, 0.0}, layout.centre_radius_m, Colour::kYellow}};
+    layout.teams[0].centre_colour = Colour::kBlue;
+    Scene scene = straight_scene(layout, kSize_px, kSize_px, kScale_px_per_m);
+    scene.floor.colour = {0.46F, 0.44F, 0.40F};
+    scene.bodies[0].radius_m = scene.bodies[0].front_m = 3.6 * layout.centre_radius_m;
+    Renderer renderer(scene, 5);
+    RandomStream random(5);
+    double along_px = 0.0;
+    constexpr int kPlaces = 60;
+    cv::Mat bgr;
+    for (int i = 0; i < kPlaces; ++i) {
+      const double heading_rad = random.uniform(0.0, 2.0 * M_PI);
+      const PixelPoint forward(std::cos(heading_rad), -std::sin(heading_rad));
+      const PixelPoint place = random_place(random);
+      const RobotPlacement robot = robot_at(renderer.camera(), layout, place, heading_rad);
+      renderer.render_robots(0, {&robot, 1}, bgr);
+      const PixelPoint truth = place + 2.4 * radius_px * forward;
+      const Bgr plate(36.0F, 36.0F, 36.0F);
+      DiscMeasurement disc;
+      ASSERT_EQ(
+          measure_disc(bgr, square_scale(kScale_px_per_m), layout.centre_radius_m,
+                       truth + random_offset(random, 0.3), kSamplingVariance_px2, disc, &plate),
+          MeasureOutcome::kMeasured);
+      along_px += (disc.centre_px - truth).dot(forward) / kPlaces;
+    }
+    EXPECT_LT(std::abs(along_px), 0.07) << radius_px;
+  }
+}
+
 // The error of many noisy pictures against the variance that each of them claims.
 TEST_P(MeasuredDisc, VarianceIsThatOfTheErrorsAtEveryNoise) {
   for (const double full_well_electrons : {40000.0, 10000.0, 2000.0, 500.0}) {

@@ -38,8 +38,9 @@ PlainSums plain_sums(const cv::Mat& bgr, const DiscWindow& w, int first_row) {
       const auto& pixel = bgr.at<cv::Vec3b>(v, u);
       const Eigen::Vector3d value =
           Eigen::Vector3d(pixel[0], pixel[1], pixel[2]) - w.surroundings.cast<double>();
-      const double share = value.dot(difference) / difference.squaredNorm();
-      const double off_line2 = (value - share * difference).squaredNorm();
+      const double share = value.dot(w.share_of.cast<double>());
+      const double along = value.dot(difference) / difference.squaredNorm();
+      const double off_line2 = (value - along * difference).squaredNorm();
       const double own =
           std::clamp(2.0 - off_line2 / (difference.squaredNorm() * 0.35 * 0.35), 0.0, 1.0);
       const double lit =
@@ -75,7 +76,8 @@ DiscWindow window_at(double u_px, double v_px, float radius_px) {
   w.to_round = Eigen::Matrix2f::Identity();
   w.surroundings = Bgr(41.0F, 60.0F, 52.0F);
   w.difference = Bgr(150.0F, 90.0F, 120.0F);
-  w.limits = {0.1F, 0.6F};
+  w.share_of = w.difference / w.difference.squaredNorm();
+  w.limits = {0.1013F, 0.6029F};  // no pixel's share is exactly a limit
   return w;
 }
 
@@ -90,7 +92,7 @@ void expect_plain_sums(const cv::Mat& bgr, const DiscWindow& w, int first_row = 
 }
 
 TEST(DiscWindow, SumsAreThoseOfAPlainLoop) {
-  const ExactPicture picture(67, 45, 1);
+  const ExactPicture picture(67, 45, 8);
   for (const float radius_px : {1.2F, 2.0F, 3.3F, 5.0F, 8.7F, 15.0F}) {
     for (const double shift_px : {0.0, 0.25, 0.5, 0.8}) {
       SCOPED_TRACE(testing::Message() << "radius " << radius_px << ", shift " << shift_px);
@@ -104,6 +106,15 @@ TEST(DiscWindow, SumsHoldAcrossASlopeOfLight) {
   DiscWindow w = window_at(31.3, 21.8, 9.0F);
   w.slope_u = 0.11F;  // reaches the limits of the light within the window
   w.slope_v = -0.04F;
+  expect_plain_sums(picture.bgr, w);
+}
+
+// Shares need not be told along the line between the two colours.
+TEST(DiscWindow, SumsWithATurnedShareFunction) {
+  const ExactPicture picture(67, 45, 7);
+  DiscWindow w = window_at(31.3, 21.8, 9.0F);
+  w.share_of = Bgr(0.011F, -0.004F, -0.001F);
+  w.share_of /= w.share_of.dot(w.difference);
   expect_plain_sums(picture.bgr, w);
 }
 
@@ -142,6 +153,7 @@ TEST(DiscWindow, SumsAtTheBordersCountOnlyPixelsOfTheImage) {
         DiscWindow dark = window_at(u_px, v_px, 4.0F);  // black would be a full share of the disc
         dark.surroundings = Bgr(200.0F, 200.0F, 200.0F);
         dark.difference = Bgr(-180.0F, -170.0F, -175.0F);
+        dark.share_of = dark.difference / dark.difference.squaredNorm();
         expect_plain_sums(picture.bgr, dark);
       }
     }

@@ -26,7 +26,7 @@ std::vector<ColourScore> scores_of(const std::vector<Colour>& colours) {
 std::vector<Seed> seeds_in(SparseSearch& search, const cv::Mat& bgr) {
   search.scan(bgr);
   std::vector<Seed> seeds;
-  search.for_each_seed([&](const Seed& seed) { seeds.push_back(seed); });
+  search.for_each_seed([&](const Seed& seed, const PixelPoint&) { seeds.push_back(seed); });
   return seeds;
 }
 
@@ -167,7 +167,7 @@ TEST(SparseSearch, MarkedPlacesAreNoSeedsOfThatColour) {
   search.mark(first, 8.0, 0);
   int of_first[2] = {0, 0};
   int of_second[2] = {0, 0};
-  search.for_each_seed([&](const Seed& seed) {
+  search.for_each_seed([&](const Seed& seed, const PixelPoint&) {
     ++((seed.pixel - first).norm() < 7.0 ? of_first : of_second)[seed.colour];
   });
   EXPECT_EQ(of_first[0], 0);
@@ -178,12 +178,32 @@ TEST(SparseSearch, MarkedPlacesAreNoSeedsOfThatColour) {
   for (int scan = 0; scan < 2; ++scan) {
     search.scan(bgr);
     int visits = 0;
-    search.for_each_seed([&](const Seed& seed) {
+    search.for_each_seed([&](const Seed& seed, const PixelPoint&) {
       ++visits;
       search.mark(seed.pixel, 20.0, seed.colour);
     });
     EXPECT_EQ(visits, 4);
   }
+}
+
+// The second place is that of the disc that comes next, not that of another point of the same disc.
+TEST(SparseSearch, TellsWhereItLooksNext) {
+  cv::Mat bgr = flat_picture(200, 90, {40, 40, 40});
+  const std::vector<PixelPoint> discs = {{30.2, 20.7}, {150.6, 24.4}, {80.4, 60.1}};
+  for (const PixelPoint& disc : discs) fill_disc(bgr, disc, 6.0, {230, 140, 30});
+  SparseSearch search(200, 90, 6.0, 6.0, scores_of({Colour::kBlue}));
+  search.scan(bgr);
+  std::size_t visits = 0;
+  search.for_each_seed([&](const Seed& seed, const PixelPoint& next) {
+    ASSERT_LT(visits, discs.size());
+    EXPECT_LT((seed.pixel - discs[visits]).norm(), 6.0);
+    if (visits + 1 < discs.size()) {
+      EXPECT_LT((next - discs[visits + 1]).norm(), 7.0);
+    }
+    search.mark(discs[visits], 8.0, seed.colour);
+    ++visits;
+  });
+  EXPECT_EQ(visits, discs.size());
 }
 
 TEST(SparseSearch, MarksBeyondTheImageAreHarmless) {
@@ -194,7 +214,8 @@ TEST(SparseSearch, MarksBeyondTheImageAreHarmless) {
     search.mark(place, 30.0, 0);
     search.mark(place, 0.0, 0);
   }
-  search.for_each_seed([](const Seed&) { ADD_FAILURE() << "a flat floor has no seeds"; });
+  search.for_each_seed(
+      [](const Seed&, const PixelPoint&) { ADD_FAILURE() << "a flat floor has no seeds"; });
 }
 
 // Sizes that are no multiples of the grid's steps, down to a single pixel, with grids finer and
