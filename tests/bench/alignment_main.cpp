@@ -1,0 +1,106 @@
+// alignment: poses by alignment beside the Cramer-Rao bound, in several lights and with spoiled
+// frames.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/bench/alignment_study.h"
+#include "tests/bench/json_file.h"
+
+namespace {
+
+using nadir::bench::AlignmentCase;
+using nadir::bench::AlignmentStudy;
+
+struct Options {
+  std::string json_file;
+  std::string only;
+  int frames = 200;
+  double guess_px = 0.3;
+  nadir::tracker::AlignmentSettings settings;
+};
+
+void print_header() {
+  fmt::print(
+      "{:<15} {:>6} {:>5} {:>7} {:>7} {:>6} {:>6} {:>7} {:>7} {:>6} {:>6} {:>7} {:>7} {:>5} {:>7} "
+      "{:>3} {:>4} {:>5} {:>6} {:>5} {:>6}\n",
+      "case", "robots", "lost", "pos_px", "bound", "ratio", "median", "head_dg", "bound", "ratio",
+      "median", "bias_u", "bias_v", "NEES", "worst", ">6s", "iter", "us", "blur", "read", "shot");
+}
+
+void print(const AlignmentCase& which, const AlignmentStudy& s) {
+  fmt::print(
+      "{:<15} {:>6} {:>5} {:>7.4f} {:>7.4f} {:>6.2f} {:>6.2f} {:>7.4f} {:>7.4f} {:>6.2f} {:>6.2f} "
+      "{:>7.4f} {:>7.4f} {:>5.2f} {:>7.1f} {:>3} {:>4.1f} {:>5.1f} {:>6.3f} {:>5.2f} {:>6.4f}\n",
+      which.name, s.robots, s.lost, s.position_rms_px, s.position_bound_px, s.position_ratio(),
+      s.position_median_ratio, s.heading_rms_deg, s.heading_bound_deg, s.heading_ratio(),
+      s.heading_median_ratio, s.bias_px.x(), s.bias_px.y(), s.nees, s.worst_nees, s.overconfident,
+      s.iterations, s.microseconds, s.blur_px, s.read, s.shot);
+  std::fflush(stdout);
+}
+
+nlohmann::json json(const AlignmentCase& which, const AlignmentStudy& s) {
+  return {{"case", which.name},
+          {"robots", s.robots},
+          {"lost", s.lost},
+          {"position_rms_px", s.position_rms_px},
+          {"position_bound_px", s.position_bound_px},
+          {"position_median_ratio", s.position_median_ratio},
+          {"heading_rms_deg", s.heading_rms_deg},
+          {"heading_bound_deg", s.heading_bound_deg},
+          {"heading_median_ratio", s.heading_median_ratio},
+          {"bias_px", {s.bias_px.x(), s.bias_px.y()}},
+          {"nees", s.nees},
+          {"beyond_six_sigma", s.overconfident},
+          {"iterations", s.iterations},
+          {"robot_us", s.microseconds}};
+}
+
+void run(const Options& options) {
+  print_header();
+  nlohmann::json cases = nlohmann::json::array();
+  for (const AlignmentCase& which : nadir::bench::alignment_cases()) {
+    if (which.name.find(options.only) == std::string::npos) continue;
+    const AlignmentStudy study =
+        nadir::bench::study_alignment(which, options.frames, options.guess_px, options.settings);
+    print(which, study);
+    cases.push_back(json(which, study));
+  }
+  nadir::bench::write_json_file(
+      {{"benchmark", "alignment"}, {"frames", options.frames}, {"cases", cases}},
+      options.json_file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Poses by alignment beside the Cramer-Rao bound.", "alignment");
+  app.footer("Example: alignment --case league --frames 200 --json alignment.json");
+  app.add_option("--json", options.json_file, "write the figures to this file too");
+  app.add_option("--case", options.only, "only cases whose name has this in it");
+  app.add_option("--frames", options.frames, "of each case")->check(CLI::Range(1, 1000000));
+  app.add_option("--guess", options.guess_px, "RMS distance of the guesses from the truth, px");
+  app.add_option("--floor", options.settings.floor_px, "error of a disc that nothing tells of, px");
+  app.add_option("--huber", options.settings.huber_sigmas, "limit of Huber's weights, sigmas");
+  app.add_option("--rim", options.settings.rim_sigmas, "masked beside the rim, blurs");
+  app.add_option("--margin", options.settings.margin_sigmas, "looked at outside of an edge, blurs");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    run(options);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "alignment: %s\n", error.what());
+    return 1;
+  }
+}

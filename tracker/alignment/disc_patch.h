@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <opencv2/core.hpp>
+
+#include "tracker/alignment/lanes.h"
+#include "tracker/alignment/mosaic.h"
+#include "tracker/alignment/plane_grid.h"
+
+namespace nadir::tracker {
+
+inline constexpr int kPatchCapacity = 2048;  ///< pixels of a disc that are looked at, at most
+inline constexpr int kMostObstacles = 12;
+
+/// A circle on the plane whose inside says nothing of a disc: another robot.
+struct Obstacle {
+  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
+  double radius_m = 0.0;
+};
+
+/// The pixels about one disc, as flat lists that loops run over eight at a time. With a mosaic only
+/// those values that were measured: then the three channels have pixels of their own, one after the
+/// other; without one they share all of them. Segments are padded with pixels that do not count.
+struct DiscPatch {
+  LocalPlane plane;  ///< about the pixel from which du, dv count
+  int count = 0;     ///< of all pixels, a multiple of kLanes
+  /// Pixels [begin[c], end[c]) have values of channel c in value[c], at the same places.
+  std::array<int, 3> begin{};
+  std::array<int, 3> end{};
+  alignas(32) std::array<float, kPatchCapacity> du;
+  alignas(32) std::array<float, kPatchCapacity> dv;
+  alignas(32) std::array<float, kPatchCapacity> use;  ///< 1, or 0: does not count
+  alignas(32) std::array<std::array<float, kPatchCapacity>, 3> value;
+};
+
+/// Which pixels are gathered.
+struct PatchWindow {
+  Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();  ///< of the disc
+  vision::PixelPoint centre_px = vision::PixelPoint::Zero();
+  double radius_m = 0.0;
+  double margin_px = 0.0;  ///< outside of the edge
+};
+
+/// Fills the patch with pixels of `image` (CV_8UC3, or with a mosaic CV_8UC1 too) whose middle lies
+/// in the window, all with use = 1; discs that do not fit are thinned out by rows. False if none is
+/// in the image.
+bool gather(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid, const PatchWindow& window,
+            DiscPatch& patch);
+
+/// Where a robot's plate ends, in its own frame.
+struct PlateShape {
+  double radius_m = 0.0;  ///< of the circle about the robot's origin
+  double front_m = 0.0;   ///< cut flat here
+};
+
+/// Sets use = 0 for pixels beyond the plate of the robot at `origin_m`, whose front is at
+/// `forward` (a unit vector), and for those in obstacles.
+void mask(const PlateShape& plate, const Eigen::Vector2d& origin_m, const Eigen::Vector2d& forward,
+          const Obstacle* obstacles, int obstacle_count, DiscPatch& patch);
+
+/// Sets use = 0 for pixels that are nearer to the edge of another disc than to that of this one.
+void leave_to(const Eigen::Vector2d& own_centre_m, double own_radius_m,
+              const Eigen::Vector2d& other_centre_m, double other_radius_m, DiscPatch& patch);
+
+}  // namespace nadir::tracker

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "tracker/alignment/disc_fit.h"
+#include "vision/marker_layout.h"
+
+namespace nadir::tracker {
+
+/// What one disc's pixels say of its centre: Gauss-Newton's quadratic about the place where it was
+/// evaluated, with levels and contrasts eliminated.
+struct CentreEvidence {
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();  ///< 1 / m^2
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();     ///< of the log likelihood, 1 / m
+  double squares = 0.0;  ///< weighted residuals, levels fitted, at this place
+  double pixels = 0.0;   ///< values that count
+
+  /// Chi-square per degree of freedom after a step.
+  double chi_square_per_dof(const Eigen::Vector2d& step_m) const;
+};
+
+/// A disc at work: its pixels, their shares, its levels. Evaluate, step, evaluate again.
+class DiscState {
+ public:
+  DiscPatch patch;
+  DiscShares shares;
+  std::array<ChannelLevels, 3> levels;
+  /// A neighbour so near that its blurred edge reaches this disc's pixels; -1: none.
+  std::array<int, 2> neighbours{-1, -1};
+
+  /// Finds levels by plain least squares for a centre.
+  void start(const DiscEdge& edge, const Eigen::Vector2d& centre_m);
+  /// Shares of the pixels in the k-th neighbour's disc, with the neighbour's present contrast.
+  void set_neighbour(int k, const DiscEdge& edge, const Eigen::Vector2d& centre_m,
+                     const std::array<ChannelLevels, 3>& levels_of_neighbour);
+  CentreEvidence evaluate(const DiscEdge& edge, const Eigen::Vector2d& centre_m,
+                          const PixelNoise& noise, double huber_sigmas);
+  /// Levels follow a step of the centre after the last evaluation.
+  void follow(const Eigen::Vector2d& step_m);
+
+  const std::array<ChannelSums, 3>& sums() const { return sums_; }
+  const float* base(int channel) const;
+  /// Sum of the shares of pixels that count, without weights; values of one channel.
+  double pixels_in_disc() const;
+
+ private:
+  std::array<ChannelSums, 3> sums_;
+  alignas(32) std::array<std::array<float, kPatchCapacity>, 3> base_;
+  alignas(32) std::array<float, kPatchCapacity> neighbour_share_;
+};
+
+}  // namespace nadir::tracker
