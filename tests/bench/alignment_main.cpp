@@ -89,6 +89,7 @@ int main(int argc, char** argv) {
   app.add_option("--guess", options.guess_px, "RMS distance of the guesses from the truth, px");
   app.add_option("--floor", options.settings.floor_px, "error of a disc that nothing tells of, px");
   app.add_option("--huber", options.settings.huber_sigmas, "limit of Huber's weights, sigmas");
+  app.add_option("--far", options.settings.far_sigmas, "where a pixel's pull fades, sigmas");
   app.add_option("--rim", options.settings.rim_sigmas, "masked beside the rim, blurs");
   app.add_option("--margin", options.settings.margin_sigmas, "looked at outside of an edge, blurs");
   try {

@@ -76,6 +76,7 @@ class Study {
         map_(exact_map(scene_)),
         grid_(map_, scene_.camera.width_px, scene_.camera.height_px),
         aligner_(scene_.layouts.front(), grid_, settings),
+        sensor_(scene_.camera.width_px, scene_.camera.height_px),
         bound_(scene_),
         guess_px_(guess_px) {}
 

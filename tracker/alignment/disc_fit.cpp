@@ -86,17 +86,25 @@ struct ChannelFit {
   float level, contrast;
   float variance0, variance_slope;  // of the noise: variance0 + variance_slope * share
   float huber, huber2;
+  float far, far2;
 };
 
-ChannelFit channel_fit(const ChannelLevels& levels, const PixelNoise& noise, double huber_sigmas) {
+ChannelFit channel_fit(const ChannelLevels& levels, const PixelNoise& noise,
+                       const OutlierLimits& limits) {
   const double outside = noise.variance(levels.level);
   const double inside = noise.variance(levels.level + levels.contrast);
-  return {static_cast<float>(levels.level), static_cast<float>(levels.contrast),
-          static_cast<float>(outside),      static_cast<float>(inside - outside),
-          static_cast<float>(huber_sigmas), static_cast<float>(huber_sigmas * huber_sigmas)};
+  const auto f = [](double value) { return static_cast<float>(value); };
+  return {f(levels.level),
+          f(levels.contrast),
+          f(outside),
+          f(inside - outside),
+          f(limits.huber_sigmas),
+          f(limits.huber_sigmas * limits.huber_sigmas),
+          f(limits.far_sigmas),
+          f(limits.far_sigmas * limits.far_sigmas)};
 }
 
-// Residual and weight of eight pixels; `plain` is the weight without Huber's limit.
+// Residual and weight of eight pixels.
 NADIR_INLINE void judge(const ChannelFit& f, const Floats& value, const Floats& base,
                         const Floats& share, const Floats& use, Floats& residual, Floats& weight) {
   const Floats model = f.level + f.contrast * share + base;
@@ -108,6 +116,7 @@ NADIR_INLINE void judge(const ChannelFit& f, const Floats& value, const Floats& 
   Floats per_root;
   lanes::inverse_root(squares, per_root);
   weight = squares > f.huber2 ? weight * per_root * f.huber : weight;
+  weight = squares > f.far2 ? weight * per_root * f.far : weight;
   const Floats zero = {};
   const Floats too_white = model > value ? weight * 0.0F : weight;
   weight = value > kWhite ? too_white : weight;
@@ -199,12 +208,12 @@ ChannelLevels fit_levels(const DiscPatch& patch, const DiscShares& shares, int c
 NADIR_VECTOR_CLONES
 ChannelSums sum_channel(const DiscPatch& patch, const DiscShares& shares, int channel,
                         const ChannelLevels& levels, const float* base, const PixelNoise& noise,
-                        double huber_sigmas) {
-  const ChannelFit fit = channel_fit(levels, noise, huber_sigmas);
+                        const OutlierLimits& limits) {
+  const ChannelFit fit = channel_fit(levels, noise, limits);
   Floats n = {}, s = {}, x = {}, y = {}, r = {};
   Floats ss = {}, sx = {}, sy = {}, sr = {};
   Floats xx = {}, xy = {}, xr = {}, yy = {}, yr = {}, rr = {};
-  Floats pixels = {};
+  Floats pixels = {}, pull = {};
   const float* const values = patch.value[channel].data();
   for (int i = patch.begin[channel]; i < patch.end[channel]; i += kLanes) {
     Floats use;
@@ -242,19 +251,43 @@ ChannelSums sum_channel(const DiscPatch& patch, const DiscShares& shares, int ch
     yr += wy * residual;
     rr += wr * residual;
     pixels += use;
+    pull += wr * wr * (by_x * by_x + by_y * by_y);
   }
-  return {sum_of(n),  sum_of(s),  sum_of(x),  sum_of(y),     sum_of(r),  sum_of(ss),
-          sum_of(sx), sum_of(sy), sum_of(sr), sum_of(xx),    sum_of(xy), sum_of(xr),
-          sum_of(yy), sum_of(yr), sum_of(rr), sum_of(pixels)};
+  return {sum_of(n),  sum_of(s),  sum_of(x),  sum_of(y),      sum_of(r),   sum_of(ss),
+          sum_of(sx), sum_of(sy), sum_of(sr), sum_of(xx),     sum_of(xy),  sum_of(xr),
+          sum_of(yy), sum_of(yr), sum_of(rr), sum_of(pixels), sum_of(pull)};
+}
+
+NADIR_VECTOR_CLONES
+void pulls_of(const DiscPatch& patch, const DiscShares& shares, int channel,
+              const ChannelLevels& levels, const float* base, const PixelNoise& noise,
+              const OutlierLimits& limits, float* pulls) {
+  const ChannelFit fit = channel_fit(levels, noise, limits);
+  const float* const values = patch.value[channel].data();
+  for (int i = patch.begin[channel]; i < patch.end[channel]; i += kLanes) {
+    Floats use;
+    Floats share;
+    Floats value;
+    Floats below = {};
+    load(&patch.use[i], use);
+    load(&shares.share[i], share);
+    load(values + i, value);
+    if (base != nullptr) load(base + i, below);
+    Floats residual;
+    Floats weight;
+    judge(fit, value, below, share, use, residual, weight);
+    store(weight * residual, pulls + i);
+  }
 }
 
 NADIR_VECTOR_CLONES
 ChannelScatter scatter_of(const DiscPatch& patch, const DiscShares& shares, int channel,
                           const ChannelLevels& levels, const float* base, const PixelNoise& noise,
-                          double huber_sigmas) {
-  const ChannelFit fit = channel_fit(levels, noise, huber_sigmas);
+                          const OutlierLimits& limits) {
+  const ChannelFit fit = channel_fit(levels, noise, limits);
   Floats inside_count = {}, inside_squares = {}, outside_count = {}, outside_squares = {};
   Floats b = {}, sb = {}, bb = {}, br = {};
+  Floats u = {}, v = {}, r = {}, uu = {}, vv = {}, ru = {}, rv = {};
   const Floats zero = {};
   const float* const values = patch.value[channel].data();
   for (int i = patch.begin[channel]; i < patch.end[channel]; i += kLanes) {
@@ -281,6 +314,17 @@ ChannelScatter scatter_of(const DiscPatch& patch, const DiscShares& shares, int 
     Floats counts = weight > zero ? use : zero;
     counts = squares < variance * (kMostScatter_sigmas * kMostScatter_sigmas) ? counts : zero;
     const Floats inside = share > kWholly ? counts : zero;
+    Floats du;
+    Floats dv;
+    load(&patch.du[i], du);
+    load(&patch.dv[i], dv);
+    u += inside * du;
+    v += inside * dv;
+    r += inside * residual;
+    uu += inside * du * du;
+    vv += inside * dv * dv;
+    ru += inside * residual * du;
+    rv += inside * residual * dv;
     const Floats outside = share < 1.0F - kWholly ? counts : zero;
     inside_count += inside;
     inside_squares += inside * squares;
@@ -294,7 +338,14 @@ ChannelScatter scatter_of(const DiscPatch& patch, const DiscShares& shares, int 
           sum_of(b),
           sum_of(sb),
           sum_of(bb),
-          sum_of(br)};
+          sum_of(br),
+          sum_of(u),
+          sum_of(v),
+          sum_of(r),
+          sum_of(uu),
+          sum_of(vv),
+          sum_of(ru),
+          sum_of(rv)};
 }
 
 }  // namespace nadir::tracker

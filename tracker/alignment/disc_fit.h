@@ -61,14 +61,23 @@ struct ChannelSums {
   float ss = 0, sx = 0, sy = 0, sr = 0;
   float xx = 0, xy = 0, xr = 0, yy = 0, yr = 0, rr = 0;
   float pixels = 0;  ///< that count, without weight
+  /// Sum of (weight residual)^2 (by_x^2 + by_y^2): how far the residuals pull at the centre.
+  float pull = 0;
+};
+
+/// How pixels are limited that do not belong there: beyond `huber` sigmas their pull stays the
+/// same, beyond `far` sigmas it fades with their distance.
+struct OutlierLimits {
+  double huber_sigmas = 2.5;
+  double far_sigmas = 1e9;
 };
 
 /// `base`: a list to be subtracted from the values (neighbours), or null. Weights are 1 over the
-/// noise's variance, Huber's beyond `huber_sigmas`. A pixel that is white and shall be whiter says
+/// noise's variance, less beyond the limits. A pixel that is white and shall be whiter says
 /// nothing.
 ChannelSums sum_channel(const DiscPatch& patch, const DiscShares& shares, int channel,
                         const ChannelLevels& levels, const float* base, const PixelNoise& noise,
-                        double huber_sigmas);
+                        const OutlierLimits& limits);
 
 /// What the residuals of one channel say of noise and blur.
 struct ChannelScatter {
@@ -76,10 +85,17 @@ struct ChannelScatter {
   float outside_count = 0, outside_squares = 0;  ///< of pixels wholly beside it
   /// Sums of weight times by_blur b, with 1, s, b, r.
   float b = 0, sb = 0, bb = 0, br = 0;
+  /// Of pixels wholly in the disc: place and residual, without weights.
+  float du = 0, dv = 0, r = 0, uu = 0, vv = 0, ru = 0, rv = 0;
 };
+
+/// Weight times residual of each pixel of a channel, into a list as long as the patch.
+void pulls_of(const DiscPatch& patch, const DiscShares& shares, int channel,
+              const ChannelLevels& levels, const float* base, const PixelNoise& noise,
+              const OutlierLimits& limits, float* pulls);
 
 ChannelScatter scatter_of(const DiscPatch& patch, const DiscShares& shares, int channel,
                           const ChannelLevels& levels, const float* base, const PixelNoise& noise,
-                          double huber_sigmas);
+                          const OutlierLimits& limits);
 
 }  // namespace nadir::tracker

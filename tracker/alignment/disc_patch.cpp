@@ -127,6 +127,7 @@ bool gather(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid, const Pa
   const int u0 = static_cast<int>(std::lround(window.centre_px.x()));
   const int v0 = static_cast<int>(std::lround(window.centre_px.y()));
   patch.plane = grid.about(u0, v0);
+  patch.origin_px = {u0, v0};
   Ellipse ellipse;
   ellipse.metric = patch.plane.slope.transpose() * patch.plane.slope;
   const double m_per_px = std::sqrt(std::sqrt(ellipse.metric.determinant()));
@@ -148,6 +149,26 @@ bool gather(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid, const Pa
     gather_native(image, mosaic, ellipse, v_begin, v_end, v_step, u0, v0, patch);
   }
   return patch.count > 0;
+}
+
+NADIR_VECTOR_CLONES
+void flatten(const vision::PixelPoint& centre_px, const Eigen::Vector2d& light_slope_per_px,
+             DiscPatch& patch) {
+  const auto slope_u = static_cast<float>(light_slope_per_px.x());
+  const auto slope_v = static_cast<float>(light_slope_per_px.y());
+  const auto level = static_cast<float>(1.0 - light_slope_per_px.dot(centre_px - patch.origin_px));
+  for (int c = 0; c < 3; ++c) {
+    float* const values = patch.value[c].data();
+    for (int i = patch.begin[c]; i < patch.end[c]; i += kLanes) {
+      Floats du;
+      Floats dv;
+      Floats value;
+      load(&patch.du[i], du);
+      load(&patch.dv[i], dv);
+      load(values + i, value);
+      store(value / (level + slope_u * du + slope_v * dv), values + i);
+    }
+  }
 }
 
 NADIR_VECTOR_CLONES

@@ -24,7 +24,8 @@ struct Obstacle {
 /// other; without one they share all of them. Segments are padded with pixels that do not count.
 struct DiscPatch {
   LocalPlane plane;  ///< about the pixel from which du, dv count
-  int count = 0;     ///< of all pixels, a multiple of kLanes
+  vision::PixelPoint origin_px = vision::PixelPoint::Zero();  ///< that pixel
+  int count = 0;  ///< of all pixels, a multiple of kLanes
   /// Pixels [begin[c], end[c]) have values of channel c in value[c], at the same places.
   std::array<int, 3> begin{};
   std::array<int, 3> end{};
@@ -47,6 +48,10 @@ struct PatchWindow {
 /// in the image.
 bool gather(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid, const PatchWindow& window,
             DiscPatch& patch);
+
+/// Takes a slope of light about `centre_px` out of the values.
+void flatten(const vision::PixelPoint& centre_px, const Eigen::Vector2d& light_slope_per_px,
+             DiscPatch& patch);
 
 /// Where a robot's plate ends, in its own frame.
 struct PlateShape {

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace nadir::tracker {
 namespace {
@@ -62,13 +63,14 @@ const float* DiscState::base(int channel) const {
 }
 
 CentreEvidence DiscState::evaluate(const DiscEdge& edge, const Eigen::Vector2d& centre_m,
-                                   const PixelNoise& noise, double huber_sigmas) {
+                                   const PixelNoise& noise, const OutlierLimits& limits) {
   find_shares(patch, edge, centre_m, shares);
   CentreEvidence evidence;
+  double pull = 0.0;
+  double pull_of_noise = 0.0;
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);
-    const ChannelSums sums =
-        sum_channel(patch, shares, c, levels[channel], base(c), noise, huber_sigmas);
+    const ChannelSums sums = sum_channel(patch, shares, c, levels[channel], base(c), noise, limits);
     sums_[channel] = sums;
     const double contrast = levels[channel].contrast;
     const Normal n = normal_of(sums, contrast);
@@ -81,8 +83,42 @@ CentreEvidence DiscState::evaluate(const DiscEdge& edge, const Eigen::Vector2d& 
     evidence.gradient += contrast * br - n.ab.transpose() * n.aa_inverse * n.ar;
     evidence.squares += static_cast<double>(sums.rr) - n.ar.dot(n.aa_inverse * n.ar);
     evidence.pixels += static_cast<double>(sums.pixels);
+    pull += contrast * contrast * static_cast<double>(sums.pull);
+    pull_of_noise += contrast * contrast * bb.trace();
   }
+  if (pull_of_noise > 0.0) evidence.pull_ratio = pull / pull_of_noise;
   return evidence;
+}
+
+double DiscState::structure(const CentreEvidence& evidence, const PixelNoise& noise,
+                            const OutlierLimits& limits) {
+  std::array<Eigen::Vector2d, 8> pull_of_sector;
+  pull_of_sector.fill(Eigen::Vector2d::Zero());
+  for (int c = 0; c < 3; ++c) {
+    const auto channel = static_cast<std::size_t>(c);
+    const double contrast = levels[channel].contrast;
+    const Normal n = normal_of(sums_[channel], contrast);
+    if (!n.solvable) continue;
+    pulls_of(patch, shares, c, levels[channel], base(c), noise, limits, pulls_.data());
+    // A pixel pulls by its derivative less what level and contrast would take of it.
+    const Eigen::Matrix2f taken = (n.aa_inverse * n.ab).cast<float>();
+    const auto k = static_cast<float>(contrast);
+    for (int i = patch.begin[channel]; i < patch.end[channel]; ++i) {
+      const auto p = static_cast<std::size_t>(i);
+      const float x = shares.by_x[p];
+      const float y = shares.by_y[p];
+      const float share = shares.share[p];
+      const std::size_t sector =
+          (x > 0.0F ? 1 : 0) + (y > 0.0F ? 2 : 0) + (std::abs(x) > std::abs(y) ? 4 : 0);
+      pull_of_sector[sector].x() +=
+          static_cast<double>(pulls_[p] * (k * x - taken(0, 0) - taken(1, 0) * share));
+      pull_of_sector[sector].y() +=
+          static_cast<double>(pulls_[p] * (k * y - taken(0, 1) - taken(1, 1) * share));
+    }
+  }
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& pull : pull_of_sector) scatter += pull * pull.transpose();
+  return 0.5 * (evidence.information.inverse() * scatter).trace();
 }
 
 void DiscState::follow(const Eigen::Vector2d& step_m) {

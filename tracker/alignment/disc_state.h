@@ -15,6 +15,8 @@ struct CentreEvidence {
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();     ///< of the log likelihood, 1 / m
   double squares = 0.0;  ///< weighted residuals, levels fitted, at this place
   double pixels = 0.0;   ///< values that count
+  /// Scatter of the pull at the centre over what noise would make: the misfit where it matters.
+  double pull_ratio = 1.0;
 
   /// Chi-square per degree of freedom after a step.
   double chi_square_per_dof(const Eigen::Vector2d& step_m) const;
@@ -35,7 +37,13 @@ class DiscState {
   void set_neighbour(int k, const DiscEdge& edge, const Eigen::Vector2d& centre_m,
                      const std::array<ChannelLevels, 3>& levels_of_neighbour);
   CentreEvidence evaluate(const DiscEdge& edge, const Eigen::Vector2d& centre_m,
-                          const PixelNoise& noise, double huber_sigmas);
+                          const PixelNoise& noise, const OutlierLimits& limits);
+  /// How the pull at the centre is spread about the disc, after `evaluate` with the same arguments:
+  /// the covariance of eight sectors' pulls over what noise would make of it. About 1 for noise;
+  /// large where neighbouring pixels err together, as at a shadow's edge, of which the squares of
+  /// residuals tell too little. (A cluster-robust covariance; White, Econometrica 1980.)
+  double structure(const CentreEvidence& evidence, const PixelNoise& noise,
+                   const OutlierLimits& limits);
   /// Levels follow a step of the centre after the last evaluation.
   void follow(const Eigen::Vector2d& step_m);
 
@@ -48,6 +56,7 @@ class DiscState {
   std::array<ChannelSums, 3> sums_;
   alignas(32) std::array<std::array<float, kPatchCapacity>, 3> base_;
   alignas(32) std::array<float, kPatchCapacity> neighbour_share_;
+  alignas(32) std::array<float, kPatchCapacity> pulls_;
 };
 
 }  // namespace nadir::tracker

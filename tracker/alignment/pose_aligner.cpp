@@ -11,12 +11,21 @@ namespace nadir::tracker {
 namespace {
 
 constexpr int kMostIterations = 10;
-constexpr double kSettled_px = 0.03;      // the step after this one would be smaller than any error
-constexpr double kGatherAgain_px = 0.75;  // pixels were gathered for a place this far away
-constexpr double kFarthest_radii = 1.5;   // from the guess: beyond it another place is found
+constexpr double kSettled_px = 0.03;  // the step after this one would be smaller than any error
+constexpr double kNear_px = 0.3;      // after a step of this length the next is in the noise
+constexpr double kNoLimit = 1e9;
+constexpr double kSuspicious = 1.15;  // chi-square per degree of freedom
+// Sectors that err much err together: then their shifts add up.
+constexpr double kMuchStructure = 8.0;
+constexpr double kNoShadow = 4.0;          // of structure: such a disc teaches nothing
+constexpr double kStructureOfNoise = 0.8;  // what chance may add to 1
+constexpr double kGatherAgain_px = 0.75;   // pixels were gathered for a place this far away
+constexpr double kFarthest_radii = 1.5;    // from the guess: beyond it another place is found
 constexpr double kFarthest_rad = 0.6;
 constexpr double kReach_sigmas = 4.0;     // so far reach the edges of two neighbours together
 constexpr double kMisfitPrior_dof = 4.0;  // few discs' misfit is mostly chance
+constexpr double kLeastInside = 12.0;     // pixels, to see a slope of light
+constexpr double kLeastLevel = 30.0;      // grey levels: darker, and noise is all there is
 constexpr double kLeastPixels = 12.0;     // values that count, else a disc is out of the image
 
 }  // namespace
@@ -42,15 +51,21 @@ struct PoseAligner::State {
   }
   DiscEdge edge(std::size_t i) const { return {robot.radius_m[i], blur_px}; }
 
-  bool gather_discs(const cv::Mat& image, Mosaic mosaic, std::span<const Obstacle> obstacles,
-                    const vision::PixelPoint& centre_px);
+  bool gather_discs(const cv::Mat& image, Mosaic mosaic, const LightShape& light,
+                    std::span<const Obstacle> obstacles, const vision::PixelPoint& centre_px);
   void find_neighbours();
   void update_neighbours();
   void evaluate_discs(const PixelNoise& noise);
+  void look_at_structure(const PixelNoise& noise);
+  OutlierLimits limits() const {
+    return {settings.huber_sigmas, last_step_px < kNear_px ? settings.far_sigmas : kNoLimit};
+  }
   void judge_looks(const ExpectedLook* look);
   bool step();
   Eigen::Matrix<double, 2, 3> lever(std::size_t i) const;
   void finish(AlignedPose& result) const;
+  void teach_light(LightShape& light, const DiscState& disc, const ChannelLevels& levels,
+                   const ChannelScatter& scatter, const PixelNoise& noise) const;
 
   DiscTemplate robot;
   const PlaneGrid* grid;
@@ -59,6 +74,7 @@ struct PoseAligner::State {
   std::array<CentreEvidence, vision::kMaxDiscs> evidence;
   std::array<double, vision::kMaxDiscs>
       inflation{};  // variance of a disc's pixels over their noise
+  std::array<double, vision::kMaxDiscs> structure{};
   std::array<bool, vision::kMaxDiscs> counts{};
   fusion::PlanarPose pose;
   fusion::PlanarPose gathered_at;
@@ -69,7 +85,7 @@ struct PoseAligner::State {
   std::size_t taught_disc = 0;
 };
 
-bool PoseAligner::State::gather_discs(const cv::Mat& image, Mosaic mosaic,
+bool PoseAligner::State::gather_discs(const cv::Mat& image, Mosaic mosaic, const LightShape& light,
                                       std::span<const Obstacle> obstacles,
                                       const vision::PixelPoint& centre_px) {
   find_neighbours();
@@ -96,6 +112,7 @@ bool PoseAligner::State::gather_discs(const cv::Mat& image, Mosaic mosaic,
                         discs[i].patch);
     if (!counts[i]) continue;
     any = true;
+    flatten(*pixel, light.slope_per_px(*pixel), discs[i].patch);
     mask(plate, pose.position_m(), turn({1.0, 0.0}), near.data(), near_count, discs[i].patch);
     for (const int other : discs[i].neighbours) {
       if (other < 0) continue;
@@ -135,8 +152,22 @@ void PoseAligner::State::evaluate_discs(const PixelNoise& noise) {
   update_neighbours();
   for (std::size_t i = 0; i < discs.size(); ++i) {
     if (!counts[i]) continue;
-    evidence[i] = discs[i].evaluate(edge(i), disc_centre_m(i), noise, settings.huber_sigmas);
+    evidence[i] = discs[i].evaluate(edge(i), disc_centre_m(i), noise, limits());
     if (evidence[i].pixels < kLeastPixels) counts[i] = false;
+  }
+}
+
+// Where residuals are larger than noise: whether neighbouring pixels err together.
+void PoseAligner::State::look_at_structure(const PixelNoise& noise) {
+  for (std::size_t i = 0; i < discs.size(); ++i) {
+    structure[i] = 1.0;
+    if (!counts[i]) continue;
+    const double chi_square =
+        std::max(evidence[i].chi_square_per_dof(Eigen::Vector2d::Zero()), evidence[i].pull_ratio);
+    if (chi_square < kSuspicious) continue;
+    const double excess =
+        std::max(0.0, discs[i].structure(evidence[i], noise, limits()) - 1.0 - kStructureOfNoise);
+    structure[i] = 1.0 + excess + excess * excess / kMuchStructure;
   }
 }
 
@@ -169,7 +200,8 @@ bool PoseAligner::State::step() {
     const Eigen::Vector2d moved_m = lever(i) * last_step;
     discs[i].follow(moved_m);
     longest_m = std::max(longest_m, moved_m.norm());
-    inflation[i] = std::max(1.0, evidence[i].chi_square_per_dof(moved_m));
+    inflation[i] =
+        std::max({structure[i], evidence[i].chi_square_per_dof(moved_m), evidence[i].pull_ratio});
   }
   pose.x_m += last_step.x();
   pose.y_m += last_step.y();
@@ -258,6 +290,8 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
   s.pose = guess.pose_world_robot;
   s.blur_px = sensor.blur_px();
   s.inflation.fill(1.0);
+  s.last_step_px = kNoLimit;
+  s.structure.fill(1.0);
   vision::PixelPoint centre_px = guess.centre_px;
   const double farthest_m = kFarthest_radii * s.robot.radius_m[0];
   bool gather_first = true;
@@ -270,7 +304,7 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
       if (!pixel) return false;
       centre_px = *pixel;
       s.m_per_px = s.grid->metres_per_pixel(centre_px);
-      if (!s.gather_discs(image, mosaic, obstacles, centre_px)) return false;
+      if (!s.gather_discs(image, mosaic, sensor.light, obstacles, centre_px)) return false;
       for (std::size_t i = 0; i < s.discs.size(); ++i) {
         if (s.counts[i]) s.discs[i].start(s.edge(i), s.disc_centre_m(i));
       }
@@ -278,6 +312,7 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
     }
     s.evaluate_discs(sensor.noise());
     s.judge_looks(look);
+    if (s.last_step_px < kNear_px) s.look_at_structure(sensor.noise());
     if (std::count(s.counts.begin(), s.counts.begin() + s.robot.disc_count, true) < 2) return false;
     if (!s.step()) return false;
     const Eigen::Vector3d away = fusion::pose_difference(s.pose, guess.pose_world_robot);
@@ -292,20 +327,43 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
   return true;
 }
 
+// The slope of the residuals well inside of a disc is that of the light.
+void PoseAligner::State::teach_light(LightShape& light, const DiscState& disc,
+                                     const ChannelLevels& levels, const ChannelScatter& scatter,
+                                     const PixelNoise& noise) const {
+  const auto n = static_cast<double>(scatter.inside_count);
+  const double level = levels.level + levels.contrast;
+  if (n < kLeastInside || level < kLeastLevel) return;
+  const Eigen::Vector2d mean =
+      Eigen::Vector2d(static_cast<double>(scatter.du), static_cast<double>(scatter.dv)) / n;
+  const Eigen::Vector2d squares =
+      Eigen::Vector2d(static_cast<double>(scatter.uu), static_cast<double>(scatter.vv)) -
+      n * mean.cwiseAbs2();
+  const Eigen::Vector2d moment =
+      Eigen::Vector2d(static_cast<double>(scatter.ru), static_cast<double>(scatter.rv)) -
+      mean * static_cast<double>(scatter.r);
+  if (!(squares.minCoeff() > 1.0)) return;
+  const vision::PixelPoint place = disc.patch.origin_px + mean;
+  const Eigen::Vector2d slope = moment.cwiseQuotient(squares) / level;
+  light.learn(place, slope + light.slope_per_px(place),
+              noise.variance(level) / (squares.mean() * level * level));
+}
+
 void PoseAligner::teach(SensorModel& sensor) {
   State& s = *state_;
   const std::size_t i = s.taught_disc++ % s.discs.size();
-  if (!s.counts[i] || s.inflation[i] > 4.0) return;
+  if (!s.counts[i] || s.structure[i] > kNoShadow) return;
   DiscState& disc = s.discs[i];
+  const OutlierLimits limits{s.settings.huber_sigmas, s.settings.far_sigmas};
   double score = 0.0;
   double information = 0.0;
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);
     const ChannelLevels& levels = disc.levels[channel];
-    const ChannelSums sums = sum_channel(disc.patch, disc.shares, c, levels, disc.base(c),
-                                         sensor.noise(), s.settings.huber_sigmas);
-    const ChannelScatter scatter = scatter_of(disc.patch, disc.shares, c, levels, disc.base(c),
-                                              sensor.noise(), s.settings.huber_sigmas);
+    const ChannelSums sums =
+        sum_channel(disc.patch, disc.shares, c, levels, disc.base(c), sensor.noise(), limits);
+    const ChannelScatter scatter =
+        scatter_of(disc.patch, disc.shares, c, levels, disc.base(c), sensor.noise(), limits);
     const auto d = [](float value) { return static_cast<double>(value); };
     if (scatter.inside_count > 1.0F) {
       sensor.learn_noise(levels.level + levels.contrast,
@@ -317,6 +375,7 @@ void PoseAligner::teach(SensorModel& sensor) {
                          d(scatter.outside_squares) / (d(scatter.outside_count) - 0.5),
                          d(scatter.outside_count));
     }
+    s.teach_light(sensor.light, disc, levels, scatter, sensor.noise());
     Eigen::Matrix2d aa;
     aa << d(sums.n), d(sums.s), d(sums.s), d(sums.ss);
     if (!(aa.determinant() > 1e-4 * aa(0, 0) * aa(0, 0))) continue;

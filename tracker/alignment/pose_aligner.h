@@ -55,8 +55,9 @@ struct PoseGuess {
 /// Settings that are the same for every camera and every light.
 struct AlignmentSettings {
   double huber_sigmas = 2.5;
+  double far_sigmas = 5.0;  ///< a pixel's pull fades beyond it, once the pose is nearly right
   /// Error of a disc's centre, per axis, that neither noise nor residuals tell of.
-  double floor_px = 0.004;
+  double floor_px = 0.0015;
   double rim_sigmas = 2.0;     ///< pixels nearer to the plate's rim than this many blurs are masked
   double margin_sigmas = 3.0;  ///< pixels are looked at up to this far outside of an edge
   double least_cosine = 0.97;  ///< between the expected and the seen contrast of a disc

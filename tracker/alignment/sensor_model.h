@@ -3,14 +3,17 @@
 #include <array>
 
 #include "tracker/alignment/disc_fit.h"
+#include "tracker/alignment/light_shape.h"
 
 namespace nadir::tracker {
 
-/// What the discs of one camera tell of its optics and its sensor: how wide edges are blurred and
-/// how noisy values are. Learnt from every robot that is aligned, so that nobody has to state it;
-/// starts from values of a usual camera.
+/// What the discs of one camera tell of its optics and its sensor: how wide edges are blurred,
+/// how noisy values are and how the light runs over the picture. Learnt from every robot that is
+/// aligned, so that nobody has to state it; starts from values of a usual camera.
 class SensorModel {
  public:
+  SensorModel(int width_px, int height_px) : light(width_px, height_px) {}
+
   double blur_px() const { return blur_px_; }
   const PixelNoise& noise() const { return noise_; }
 
@@ -21,6 +24,8 @@ class SensorModel {
 
   /// Standard deviation of the blur as far as noise makes it, px.
   double blur_deviation_px() const;
+
+  LightShape light;
 
  private:
   void solve_noise();
