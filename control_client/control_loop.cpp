@@ -1,21 +1,35 @@
 #include "control_client/control_loop.h"
 
+#include <cassert>
+#include <utility>
+
 namespace nadir::control_client {
 
-ControlLoop::ControlLoop(const RobotModel& model, const ControlParameters& control,
-                         const NominalSettings& nominal, TrajectoryPtr trajectory)
+ControlLoop::ControlLoop(const RobotModel& model, const ControlParameters& control)
     : control_(control),
       command_limit_(model.parameters().max_speed_mps, model.parameters().max_speed_mps,
                      model.parameters().max_turn_rate_radps),
-      nominal_(model, control, nominal, std::move(trajectory)),
       outer_(control.outer),
       inner_(model, control.inner) {}
 
+ControlLoop::ControlLoop(const RobotModel& model, const ControlParameters& control,
+                         const NominalSettings& nominal, TrajectoryPtr trajectory)
+    : ControlLoop(model, control) {
+  nominal_.emplace(model, control, nominal, std::move(trajectory));
+  motion_ = nominal_->motion();
+}
+
 const Eigen::Vector3d& ControlLoop::tick(const fusion::PlanarPose& estimate) {
-  if (has_started_) nominal_.advance();
+  assert(nominal_);
+  if (has_started_) nominal_->advance();
   has_started_ = true;
-  return tick_at(
-      outer_.body_rate_command(nominal_.motion(), estimate, control_.tick_s, !is_saturated_));
+  return tick(estimate, nominal_->motion(), control_.tick_s);
+}
+
+const Eigen::Vector3d& ControlLoop::tick(const fusion::PlanarPose& estimate,
+                                         const NominalMotion& nominal, double dt_s) {
+  motion_ = nominal;
+  return tick_at(outer_.body_rate_command(motion_, estimate, dt_s, !is_saturated_));
 }
 
 const Eigen::Vector3d& ControlLoop::tick_at(const Eigen::Vector3d& body_rates) {
@@ -25,7 +39,11 @@ const Eigen::Vector3d& ControlLoop::tick_at(const Eigen::Vector3d& body_rates) {
 }
 
 WheelVector ControlLoop::inner_step(const Eigen::Vector3d& measured_rates) {
-  WheelVector voltages_v = inner_.voltages_v(command_, measured_rates, control_.inner_step_s());
+  return inner_step(measured_rates, control_.inner_step_s());
+}
+
+WheelVector ControlLoop::inner_step(const Eigen::Vector3d& measured_rates, double dt_s) {
+  WheelVector voltages_v = inner_.voltages_v(command_, measured_rates, dt_s);
   is_saturated_ = is_saturated_ || inner_.is_saturated();
   return voltages_v;
 }

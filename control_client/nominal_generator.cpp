@@ -18,16 +18,21 @@ NominalGenerator::NominalGenerator(const RobotModel& model, const ControlParamet
   if (settings.kind == NominalKind::kExact) motion_.velocity_per_s = start.velocity_per_s;
 }
 
-void NominalGenerator::advance() {
-  ++tick_;
+void NominalGenerator::advance(double dt_s, double pace) {
+  if (dt_s == tick_s_ && pace == 1.0) {
+    ++ticks_;
+  } else {
+    began_s_ = time_s() + pace * dt_s;
+    ticks_ = 0;
+  }
   const TrajectoryPoint command = trajectory_->at(time_s() + settings_.preview_s);
   if (settings_.kind == NominalKind::kExact) {
-    motion_ = {command.pose, command.velocity_per_s};
+    motion_ = {command.pose, pace * command.velocity_per_s};
   } else if (shaping_) {
-    shaping_->step(command.pose, tick_s_);
+    shaping_->step(command.pose, dt_s);
     motion_ = shaping_->motion();
   } else {
-    filter_.step(command.pose, tick_s_);
+    filter_.step(command.pose, dt_s);
     motion_ = {filter_.value(), filter_.rate_per_s()};
   }
 }

@@ -33,16 +33,23 @@ class NominalGenerator {
                    const NominalSettings& settings, TrajectoryPtr trajectory);
 
   /// One tick later. The command of the new tick acts since the tick before.
-  void advance();
+  void advance() { advance(tick_s_, 1.0); }
+
+  /// dt_s > 0 later (a multiple of the tick where the motion is shaped), with the trajectory's time
+  /// running `pace` times as fast as the clock, 0 to 1: the same path, more slowly.
+  void advance(double dt_s, double pace);
 
   const NominalMotion& motion() const { return motion_; }
-  double time_s() const { return tick_ * tick_s_; }
+  /// Of the trajectory.
+  double time_s() const { return began_s_ + ticks_ * tick_s_; }
 
  private:
   NominalSettings settings_;
   TrajectoryPtr trajectory_;
   double tick_s_;
-  int tick_ = 0;
+  // Whole ticks are counted, so that their sum does not drift.
+  double began_s_ = 0.0;
+  int ticks_ = 0;
   PseudoDifferentiator filter_;
   std::optional<CommandShaping> shaping_;
   NominalMotion motion_;

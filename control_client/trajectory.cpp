@@ -121,6 +121,39 @@ class TimeScaled : public Trajectory {
   double factor_;
 };
 
+class Placed : public Trajectory {
+ public:
+  Placed(TrajectoryPtr trajectory, const Eigen::Vector3d& place)
+      : trajectory_(std::move(trajectory)),
+        place_(place),
+        rotation_(rotation_world_body(place.z())) {}
+  double duration_s() const override { return trajectory_->duration_s(); }
+
+ private:
+  TrajectoryPoint within(double time_s) const override {
+    const TrajectoryPoint point = trajectory_->at(time_s);
+    return {place_ + rotation_ * point.pose, rotation_ * point.velocity_per_s,
+            rotation_ * point.acceleration_per_s2};
+  }
+
+  TrajectoryPtr trajectory_;
+  Eigen::Vector3d place_;
+  Eigen::Matrix3d rotation_;
+};
+
+class RestOf : public Trajectory {
+ public:
+  RestOf(TrajectoryPtr trajectory, double time_s)
+      : trajectory_(std::move(trajectory)), time_s_(time_s) {}
+  double duration_s() const override { return std::max(0.0, trajectory_->duration_s() - time_s_); }
+
+ private:
+  TrajectoryPoint within(double time_s) const override { return trajectory_->at(time_s_ + time_s); }
+
+  TrajectoryPtr trajectory_;
+  double time_s_;
+};
+
 }  // namespace
 
 TrajectoryPoint Trajectory::at(double time_s) const {
@@ -153,6 +186,14 @@ TrajectoryPtr step_trajectory(const Eigen::Vector3d& target, double duration_s) 
 
 TrajectoryPtr time_scaled(TrajectoryPtr trajectory, double factor) {
   return std::make_shared<TimeScaled>(std::move(trajectory), factor);
+}
+
+TrajectoryPtr placed(TrajectoryPtr trajectory, const Eigen::Vector3d& place) {
+  return std::make_shared<Placed>(std::move(trajectory), place);
+}
+
+TrajectoryPtr rest_of(TrajectoryPtr trajectory, double time_s) {
+  return std::make_shared<RestOf>(std::move(trajectory), time_s);
 }
 
 const std::vector<NamedTrajectory>& standard_trajectories() {

@@ -62,6 +62,14 @@ TrajectoryPtr step_trajectory(const Eigen::Vector3d& target, double duration_s);
 /// The same path, `factor` times as fast (above 0).
 TrajectoryPtr time_scaled(TrajectoryPtr trajectory, double factor);
 
+/// The same motion elsewhere: its origin is put to `place` (x m, y m, heading rad) and the whole
+/// path turned by its heading.
+TrajectoryPtr placed(TrajectoryPtr trajectory, const Eigen::Vector3d& place);
+
+/// What is left of a motion after `time_s` of it, from within its duration; it need not begin at
+/// rest.
+TrajectoryPtr rest_of(TrajectoryPtr trajectory, double time_s);
+
 /// Largest share of the robot's limits that a trajectory asks for, looked at every millisecond.
 struct TrajectoryDemand {
   double speed = 0.0;    ///< of max_speed_mps and max_turn_rate_radps

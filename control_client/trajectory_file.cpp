@@ -157,6 +157,17 @@ TrajectoryPtr load_yaml(const std::filesystem::path& file) {
   return waypoint_trajectory(waypoints, limits);
 }
 
+TrajectoryPtr find_trajectory(const std::string& name_or_file) {
+  if (TrajectoryPtr trajectory = standard_trajectory(name_or_file)) return trajectory;
+  if (!std::filesystem::path(name_or_file).extension().empty()) {
+    return load_trajectory(name_or_file);
+  }
+  std::string names;
+  for (const NamedTrajectory& each : standard_trajectories()) names += each.name + ", ";
+  throw vision::InputError({"nadir-client", 0, 0}, "no trajectory is called '" + name_or_file + "'",
+                           "choose one of " + names + "or a .csv or .yaml file");
+}
+
 }  // namespace
 
 TrajectoryPtr waypoint_trajectory(const std::vector<Eigen::Vector3d>& waypoints,
@@ -181,17 +192,7 @@ TrajectoryPtr load_trajectory(const std::filesystem::path& file) {
 
 TrajectoryPtr choose_trajectory(const std::string& name_or_file, const RobotModel& model,
                                 double speed) {
-  TrajectoryPtr trajectory = standard_trajectory(name_or_file);
-  if (!trajectory) {
-    if (std::filesystem::path(name_or_file).extension().empty()) {
-      std::string names;
-      for (const NamedTrajectory& each : standard_trajectories()) names += each.name + ", ";
-      throw vision::InputError({"nadir-client", 0, 0},
-                               "no trajectory is called '" + name_or_file + "'",
-                               "choose one of " + names + "or a .csv or .yaml file");
-    }
-    trajectory = load_trajectory(name_or_file);
-  }
+  TrajectoryPtr trajectory = find_trajectory(name_or_file);
   if (speed != 1.0) trajectory = time_scaled(trajectory, speed);
   const TrajectoryDemand demand = trajectory_demand(*trajectory, model);
   const double most = std::max(demand.speed, demand.voltage);
@@ -203,6 +204,21 @@ TrajectoryPtr choose_trajectory(const std::string& name_or_file, const RobotMode
         fmt::format("drive it at {:.2f} of this speed or slower", 0.99 / most));
   }
   return trajectory;
+}
+
+TrajectoryPtr fitting_trajectory(const std::string& name_or_file, const RobotModel& model,
+                                 double speed) {
+  constexpr double kMargin = 0.99;
+  TrajectoryPtr trajectory = time_scaled(find_trajectory(name_or_file), speed);
+  // Speed grows with the factor, voltage at least so: each round falls below the limit or nearly.
+  for (int round = 0; round < 20; ++round) {
+    const TrajectoryDemand demand = trajectory_demand(*trajectory, model);
+    const double most = std::max(demand.speed, demand.voltage);
+    if (most <= 1.0) return trajectory;
+    trajectory = time_scaled(trajectory, kMargin / most);
+  }
+  throw vision::InputError({name_or_file, 0, 0}, "no speed of this trajectory suits the robot",
+                           "see its limits");
 }
 
 }  // namespace nadir::control_client

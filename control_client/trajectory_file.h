@@ -46,4 +46,8 @@ TrajectoryPtr load_trajectory(const std::filesystem::path& file);
 TrajectoryPtr choose_trajectory(const std::string& name_or_file, const RobotModel& model,
                                 double speed = 1.0);
 
+/// The same, but slower where the robot could not follow otherwise.
+TrajectoryPtr fitting_trajectory(const std::string& name_or_file, const RobotModel& model,
+                                 double speed = 1.0);
+
 }  // namespace nadir::control_client

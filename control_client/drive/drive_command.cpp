@@ -1,0 +1,67 @@
+#include "control_client/drive/drive_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <numbers>
+
+#include "control_client/drive/drive_config.h"
+#include "control_client/drive/drive_process.h"
+#include "control_client/trajectory_file.h"
+#include "tracker/wire/wire_types.h"
+#include "vision/input/input_error.h"
+
+namespace nadir::control_client {
+namespace {
+
+Eigen::Vector3d place_of(const std::vector<double>& numbers) {
+  return {numbers.at(0), numbers.at(1), numbers.at(2) * std::numbers::pi / 180.0};
+}
+
+DriveConfig effective_config(const DriveOptions& options) {
+  DriveConfig config;
+  if (!options.config.empty()) config = load_drive_config(options.config);
+  if (options.domain) config.domain = *options.domain;
+  if (options.partition) config.partition = *options.partition;
+  if (options.team) config.team = *options.team;
+  if (!options.robot_file.empty()) config.robot = options.robot_file;
+  if (options.speed) config.speed = *options.speed;
+  if (options.fits_limits) config.fits_limits = true;
+  if (options.repeats || options.duration_s) config.plan.repeats = true;
+  if (!options.place.empty()) config.place = place_of(options.place);
+  if (!options.start.empty()) config.start = place_of(options.start);
+  if (options.seed) config.simulation.seed = static_cast<std::uint64_t>(*options.seed);
+  if (options.clock_error_s) config.clock_error.offset_s = *options.clock_error_s;
+  if (config.team.empty() || config.team.size() > tracker::kMaxTeamLength) {
+    throw vision::InputError({"nadir-client", 0, 0}, "'" + config.team + "' is no team's name",
+                             "1 to 15 bytes, as in the layout of the robots");
+  }
+  return config;
+}
+
+}  // namespace
+
+void run_drive_command(const DriveOptions& options, const std::atomic<bool>& stop) {
+  const DriveConfig config = effective_config(options);
+  if (options.prints_config) {
+    fmt::print("{}", drive_config_yaml(config));
+    return;
+  }
+  DriveTask task;
+  task.robot = options.robot;
+  if (!config.robot.empty()) task.robot_config = load_robot(config.robot);
+  const RobotModel model(task.robot_config.robot);
+  task.trajectory =
+      placed(config.fits_limits ? fitting_trajectory(options.trajectory, model, config.speed)
+                                : choose_trajectory(options.trajectory, model, config.speed),
+             config.place);
+  task.simulates = options.simulates;
+  task.log = options.log;
+  task.duration_s = options.duration_s;
+  DriveProcess process(config, task,
+                       [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  process.run(stop);
+}
+
+}  // namespace nadir::control_client
