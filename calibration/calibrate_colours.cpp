@@ -65,7 +65,7 @@ void run(const ColoursOptions& options) {
   if (options.output == "-" && options.json == "-") {
     throw InputError({}, "-o and --json both want stdout", "give one of them a file");
   }
-  const vision::MarkerLayout layout = vision::load_marker_layout(options.layout);
+  const vision::MarkerLayout layout = vision::load_disc_layout(options.layout);
   const std::vector<cv::Mat> images = load_images(options.images);
   const std::string origin =
       options.images.size() == 1

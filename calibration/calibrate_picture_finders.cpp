@@ -207,7 +207,7 @@ std::vector<FieldPoint> checkerboard_points(const std::vector<Picture>& pictures
 
 std::vector<FieldPoint> marker_points(const std::vector<Picture>& pictures,
                                       const PictureOptions& options) {
-  const vision::MarkerLayout layout = vision::load_marker_layout(options.layout);
+  const vision::MarkerLayout layout = vision::load_disc_layout(options.layout);
   const auto table = vision::CsvTable::load(options.markers, {"file", "x_m", "y_m"});
   std::vector<cv::Mat> images;
   std::vector<std::size_t> rows;

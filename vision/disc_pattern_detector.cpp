@@ -67,6 +67,7 @@ struct DiscPatternDetector::State {
   }
 
   void fetch_robot(const cv::Mat& bgr, const PixelPoint& place) const;
+  void mark_robot(const PixelPoint& place);
   void consider(const cv::Mat& bgr, const Seed& seed, DetectionResult& result);
   void reject(DetectionResult& result, const PixelPoint& place, RejectReason reason) const;
   void resolve_shared_discs(DetectionResult& result);
@@ -106,6 +107,13 @@ void DiscPatternDetector::State::fetch_robot(const cv::Mat& bgr, const PixelPoin
     for (std::ptrdiff_t byte = begin; byte < end; byte += kCacheLineBytes) {
       __builtin_prefetch(line + byte);
     }
+  }
+}
+
+void DiscPatternDetector::State::mark_robot(const PixelPoint& place) {
+  const double radius_px = reach_m * static_cast<double>(local_scale(scale, place).scale_px_per_m);
+  for (int colour = 0; colour < static_cast<int>(team_scores.size()); ++colour) {
+    search.mark(place, radius_px, colour);
   }
 }
 
@@ -221,6 +229,11 @@ DiscPatternDetector::DiscPatternDetector(DiscPatternDetector&&) noexcept = defau
 DiscPatternDetector& DiscPatternDetector::operator=(DiscPatternDetector&&) noexcept = default;
 
 void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
+  detect(bgr, {}, result);
+}
+
+void DiscPatternDetector::detect(const cv::Mat& bgr, const SearchArea& area,
+                                 DetectionResult& result) {
   if (bgr.type() != CV_8UC3 || bgr.cols != state_->scale.width_px() ||
       bgr.rows != state_->scale.height_px()) {
     throw std::invalid_argument("DiscPatternDetector: frame is not CV_8UC3 of the scale's size");
@@ -234,7 +247,8 @@ void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
     state.sampling_variance_px2 =
         looks_demosaiced(bgr) ? kDemosaicedSamplingVariance_px2 : kSamplingVariance_px2;
   }
-  state.search.scan(bgr);
+  state.search.scan(bgr, area.row_begin_px, std::min(area.row_end_px, bgr.rows));
+  for (const PixelPoint& place : area.known) state.mark_robot(place);
   state.search.for_each_seed([&](const Seed& seed, const PixelPoint& next) {
     state.fetch_robot(bgr, next);
     state.consider(bgr, seed, result);

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <opencv2/core.hpp>
+#include <span>
 
 #include "vision/colour_classes.h"
 #include "vision/marker_layout.h"
@@ -9,6 +10,13 @@
 #include "vision/pixel_scale_grid.h"
 
 namespace nadir::vision {
+
+/// A part of the picture to be searched, less what is known to be there.
+struct SearchArea {
+  int row_begin_px = 0;
+  int row_end_px = 1 << 30;             ///< not included
+  std::span<const PixelPoint> known{};  ///< robots' origins: nothing is looked for on them
+};
 
 /// Finds all robots of one layout in a frame without knowing anything of earlier frames.
 /// Looks at a sparse grid of pixels first, then closely where a centre disc may be. Not
@@ -27,6 +35,8 @@ class DiscPatternDetector {
   /// allocated after the first call. An identity may be found twice: the tracker decides. Throws
   /// std::invalid_argument for a frame of another type or size.
   void detect(const cv::Mat& bgr, DetectionResult& result);
+  /// The same with robots only whose centre disc lies in the area.
+  void detect(const cv::Mat& bgr, const SearchArea& area, DetectionResult& result);
 
  private:
   struct State;

@@ -5,6 +5,7 @@
 #include "vision/input/strict_yaml.h"
 #include "vision/layout_ambiguity.h"
 #include "vision/marker_layout.h"
+#include "vision/tag_layout_file.h"
 
 namespace nadir::vision {
 namespace {
@@ -121,36 +122,47 @@ std::vector<Identity> read_identities(const YamlMap& map, std::size_t outer_coun
   return identities;
 }
 
-void check_kind(const YamlMap& file) {
-  if (file.choice("kind", {"discs", "apriltag"}) == "discs") return;
-  throw file.error("kind", "layouts of kind 'apriltag' are not supported by this version",
-                   "use a layout of kind 'discs'");
+void read_discs(const YamlMap& file, MarkerLayout& layout) {
+  layout.teams = read_teams(file);
+  layout.centre_radius_m = file.number("centre_radius_m", kRadiusRangeM);
+  const std::optional<YamlMap> identities = file.map_if_present("identities");
+  layout.outer = read_outer(file, layout.centre_radius_m, identities.has_value());
+  if (!identities) return;
+  layout.identities = read_identities(*identities, layout.outer.size());
+  if (layout.identities.empty()) {
+    throw file.error("identities", "'identities' is empty",
+                     "list one robot or remove the key and give the outer discs colours");
+  }
 }
 
 }  // namespace
 
 MarkerLayout load_marker_layout(const std::filesystem::path& path) {
   const YamlMap file = YamlMap::load(path);
-  check_kind(file);
+  const bool has_tags = file.choice("kind", {"discs", "apriltag"}) == "apriltag";
   MarkerLayout layout;
   layout.name = file.text("name");
   layout.height_m = file.number("height_m", kHeightRangeM);
-  layout.teams = read_teams(file);
-  layout.centre_radius_m = file.number("centre_radius_m", kRadiusRangeM);
-  const std::optional<YamlMap> identities = file.map_if_present("identities");
-  layout.outer = read_outer(file, layout.centre_radius_m, identities.has_value());
-  if (identities) {
-    layout.identities = read_identities(*identities, layout.outer.size());
-    if (layout.identities.empty()) {
-      throw file.error("identities", "'identities' is empty",
-                       "list one robot or remove the key and give the outer discs colours");
-    }
+  if (has_tags) {
+    layout.teams = {{file.text_or("team", layout.name), Colour::kWhite}};
+    layout.tags = read_tag_layout(file);
+  } else {
+    read_discs(file, layout);
   }
   file.finish();
+  if (has_tags) return layout;
   if (const auto ambiguity = find_ambiguity(layout)) {
     throw file.error("outer", *ambiguity, "move a disc or change a colour");
   }
   return layout;
+}
+
+MarkerLayout load_disc_layout(const std::filesystem::path& path) {
+  MarkerLayout layout = load_marker_layout(path);
+  if (!layout.tags) return layout;
+  const YamlMap file = YamlMap::load(path);
+  throw file.error("kind", fmt::format("layout '{}' has tags", layout.name),
+                   "name a layout of kind 'discs'");
 }
 
 }  // namespace nadir::vision

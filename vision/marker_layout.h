@@ -4,8 +4,11 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "vision/tag_layout.h"
 
 namespace nadir::vision {
 
@@ -39,7 +42,7 @@ struct Identity {
 };
 
 /// How a kind of robot looks from above: a centre disc in the team's colour and one or more outer
-/// discs.
+/// discs, or tags.
 struct MarkerLayout {
   std::string name;
   double height_m = 0.0;  ///< of the marker plane above the field
@@ -48,17 +51,28 @@ struct MarkerLayout {
   std::vector<Disc> outer;  ///< 1 to kMaxDiscs - 1 discs
   std::vector<Identity>
       identities;  ///< empty: robots are anonymous and outer discs have fixed colours
+  /// Robots with tags: then there are no discs and no identities, and one team, whose colour is
+  /// only that of its drawings.
+  std::optional<TagLayout> tags = std::nullopt;
 
-  bool is_anonymous() const { return identities.empty(); }
-  int disc_count() const { return 1 + static_cast<int>(outer.size()); }
+  bool is_anonymous() const { return identities.empty() && !tags; }
+  int disc_count() const { return tags ? 0 : 1 + static_cast<int>(outer.size()); }
+  /// Numbers that robots may have, rising as in the file. Empty: anonymous, any number.
+  std::vector<int> robot_ids() const;
+  bool has_robot(int id) const;
+  /// Of a circle about the robot's origin that holds all marks.
+  double extent_m() const;
   /// Disc 0 is the centre disc, disc i the outer disc i - 1. Its colour is that of the robot `id`
   /// of team `team`; `identity` is an index into identities (ignored when anonymous).
   Disc disc(int index, int team, int identity) const;
 };
 
-/// Reads a layout file (kind: discs). Throws InputError: unknown, duplicate or missing key, value
-/// out of range, discs that overlap, two equal identities, two teams of one colour.
+/// Reads a layout file. Throws InputError: unknown, duplicate or missing key, value out of range,
+/// discs that overlap, two equal identities, two teams of one colour; tag_layout_file.h has what is
+/// asked of tags.
 MarkerLayout load_marker_layout(const std::filesystem::path& file);
+/// The same for those who can do nothing with tags: a layout of kind apriltag is an error.
+MarkerLayout load_disc_layout(const std::filesystem::path& file);
 
 /// The colour's name, or nothing known: throws std::out_of_range.
 Colour colour_from_name(const std::string& name);

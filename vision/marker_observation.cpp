@@ -24,6 +24,10 @@ const char* reject_reason_text(RejectReason reason) {
       return "same robot seen better elsewhere";
     case RejectReason::kTooManyCandidates:
       return "too many candidates";
+    case RejectReason::kUnknownTag:
+      return "tag of no known robot";
+    case RejectReason::kWrongTagSize:
+      return "tag has the wrong size";
   }
   return "";
 }

@@ -43,6 +43,8 @@ enum class RejectReason {
   kOutsideImage,
   kDuplicateIdentity,
   kTooManyCandidates,
+  kUnknownTag,
+  kWrongTagSize,
 };
 const char* reject_reason_text(RejectReason reason);
 

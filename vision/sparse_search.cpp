@@ -108,12 +108,23 @@ SparseSearch::SparseSearch(int width_px, int height_px, Steps steps, double larg
   }
 }
 
-void SparseSearch::scan(const cv::Mat& bgr) {
-  for (int row = 0; row < v_.count; ++row) {
-    const int to_come = std::min(row + kRowsAhead, v_.count - 1);
+void SparseSearch::scan(const cv::Mat& bgr) { scan(bgr, 0, bgr.rows); }
+
+// Rows of the surroundings are read too, so that a seed can be judged, but are not listed.
+void SparseSearch::scan(const cv::Mat& bgr, int row_begin_px, int row_end_px) {
+  const int begin = std::clamp(static_cast<int>(std::ceil(v_.index(row_begin_px))), 0, v_.count);
+  const int end = std::clamp(static_cast<int>(std::ceil(v_.index(row_end_px))), begin, v_.count);
+  const int read_end = std::min(v_.count, end + v_.margin);
+  for (int row = std::max(0, begin - v_.margin); row < read_end; ++row) {
+    const int to_come = std::min(row + kRowsAhead, read_end - 1);
     gather_row(bgr.ptr<std::uint8_t>(v_.first_px + row * v_.step_px),
                bgr.ptr<std::uint8_t>(v_.first_px + to_come * v_.step_px));
     score_row(row);
+  }
+  for (int colour = 0; colour < static_cast<int>(colours_.size()); ++colour) {
+    std::int16_t* const best = &best_of_row_[row_index(colour, 0)];
+    std::fill(best, best + begin, kNothing);
+    std::fill(best + end, best + v_.count, kNothing);
   }
 }
 

@@ -28,6 +28,8 @@ class SparseSearch {
 
   /// Reads the grid of a CV_8UC3 image of the size given at construction.
   void scan(const cv::Mat& bgr);
+  /// Only between two rows of the image, the second not included: other places are no seeds.
+  void scan(const cv::Mat& bgr, int row_begin_px, int row_end_px);
 
   /// Calls visit(seed, next) for every grid point that may lie in a disc and is not marked. `next`
   /// is about where the next thing will be looked at: time to have its pixels fetched.

@@ -187,10 +187,7 @@ TEST_F(MarkerLayoutFile, RefusesAPairThatIsItsOwnMirror) {
   EXPECT_NO_THROW(load(kHead + "outer: [{x_m: 0.06, y_m: 0, radius_m: 0.012, colour: blue}]\n"));
 }
 
-TEST_F(MarkerLayoutFile, SaysThatTagsAreNotSupported) {
-  EXPECT_EQ(load_error("name: tag\nkind: apriltag\nfamily: tag36h11\n"),
-            "robot.yaml:2:1: layouts of kind 'apriltag' are not supported by this version; use a "
-            "layout of kind 'discs'");
+TEST_F(MarkerLayoutFile, HasAKnownKind) {
   EXPECT_THAT(load_error("name: tag\nkind: disc\n"), testing::HasSubstr("did you mean 'discs'?"));
 }
 

@@ -93,7 +93,7 @@ TEST_F(SceneFile, WrongInputIsNamedWithItsPlace) {
   expect_complaint("camera: {focal_px: 500, k1: -0.3}\n", "1:25", "folds");
   expect_complaint("robots:\n  - {layout: nowhere.yaml}\n", "2:6", "nowhere.yaml");
   expect_complaint("robots:\n  - {layout: league.yaml, team: red}\n", "2:27", "yellow, blue");
-  expect_complaint("robots:\n  - {layout: league.yaml, id: 16}\n", "2:27", "no identity 16");
+  expect_complaint("robots:\n  - {layout: league.yaml, id: 16}\n", "2:27", "no robot 16");
   expect_complaint("robots:\n  - {layout: league.yaml, path: {kind: cirle}}\n", "2:", "circle");
   expect_complaint("robots:\n  - {layout: league.yaml, path: {kind: circle}}\n", "2:", "radius_m");
   expect_complaint(

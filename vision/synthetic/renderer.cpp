@@ -40,11 +40,25 @@ Scene checked(Scene scene) {
 }
 
 std::size_t identity_index(const MarkerLayout& layout, int id) {
-  if (layout.is_anonymous()) return 0;
-  for (std::size_t i = 0; i < layout.identities.size(); ++i) {
-    if (layout.identities[i].id == id) return i;
+  if (!layout.has_robot(id)) {
+    throw std::invalid_argument("layout " + layout.name + " has no robot " + std::to_string(id));
   }
-  throw std::invalid_argument("layout " + layout.name + " has no identity " + std::to_string(id));
+  const auto found = std::ranges::find(layout.identities, id, &Identity::id);
+  return found == layout.identities.end() ? 0 : found - layout.identities.begin();
+}
+
+void add_tags(const TagLayout& layout, int robot_id, Sprite& sprite) {
+  const auto paint = [](Colour colour) {
+    const Reflectance printed = printed_reflectances()[static_cast<std::size_t>(colour)];
+    return Eigen::Array4f(printed[0], printed[1], printed[2], 1.0F);
+  };
+  for (const MountedTag& tag : layout.tags_of(robot_id)) {
+    sprite.tags.push_back({.mount = tag.mount,
+                           .cell_m = layout.size_m / layout.facts().square_cells,
+                           .pattern = tag_pattern(layout.family, tag.tag_id),
+                           .white = paint(Colour::kWhite),
+                           .black = paint(Colour::kBlack)});
+  }
 }
 
 }  // namespace
@@ -96,6 +110,7 @@ Sprite Renderer::robot_sprite(const RobotPlacement& robot) const {
   sprite.motion = robot.motion;
   const RobotBody& body = scene_.bodies.at(robot.layout);
   if (body.radius_m > 0.0) sprite.body = body;
+  if (layout.tags) add_tags(*layout.tags, robot.id, sprite);
   const auto identity = static_cast<int>(identity_index(layout, robot.id));
   for (int i = 0; i < layout.disc_count(); ++i) {
     const Disc disc = layout.disc(i, static_cast<int>(robot.team), identity);

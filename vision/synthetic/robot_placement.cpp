@@ -52,7 +52,7 @@ class NameDraw {
       if (layout.is_anonymous()) {
         for (int id = 0; id < wish.count; ++id) names_.push_back({team, id});
       } else {
-        for (const Identity& identity : layout.identities) names_.push_back({team, identity.id});
+        for (const int id : layout.robot_ids()) names_.push_back({team, id});
       }
     }
   }

@@ -20,14 +20,14 @@ std::array<Reflectance, kColourCount> printed_reflectances() {
 }
 
 RobotBody default_body(const MarkerLayout& layout) {
-  double extent_m = layout.centre_radius_m;
+  RobotBody body;
+  body.radius_m = layout.extent_m() + 0.005;
+  body.front_m = body.radius_m;
+  if (layout.tags) return body;
   double foremost_m = layout.centre_radius_m;
   for (const Disc& disc : layout.outer) {
-    extent_m = std::max(extent_m, disc.position_robot_m.norm() + disc.radius_m);
     foremost_m = std::max(foremost_m, disc.position_robot_m.x() + disc.radius_m);
   }
-  RobotBody body;
-  body.radius_m = extent_m + 0.005;
   body.front_m = foremost_m + 0.010;
   return body;
 }

@@ -93,7 +93,7 @@ struct RobotBody {
 struct SceneRobot {
   std::size_t layout = 0;  ///< index into Scene::layouts
   std::size_t team = 0;    ///< index into MarkerLayout::teams
-  int id = 0;              ///< one of the layout's identities; any number if it is anonymous
+  int id = 0;              ///< one that the layout has (MarkerLayout::has_robot)
   RobotPath path;
 };
 
@@ -159,7 +159,8 @@ struct Scene {
 };
 
 /// The body that suits a layout: 5 mm more than its outermost mark, cut 10 mm before its foremost.
-/// For the league's pattern that is a radius of 90 mm and a front flat at 65 mm.
+/// For the league's pattern that is a radius of 90 mm and a front flat at 65 mm. Under tags it is a
+/// full circle.
 RobotBody default_body(const MarkerLayout& layout);
 
 /// Reads a scene. Layout files are named relative to the scene's. Throws InputError with

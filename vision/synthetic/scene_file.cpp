@@ -166,13 +166,12 @@ void read_robot(const YamlMap& map, LayoutShelf& shelf, Scene& scene) {
   const MarkerLayout& layout = scene.layouts[robot.layout];
   robot.team =
       shelf.team_of(map, "team", robot.layout, map.text_or("team", layout.teams.front().name));
-  robot.id = map.integer_or("id", layout.is_anonymous() ? static_cast<int>(scene.robots.size())
-                                                        : layout.identities.front().id);
-  const bool known = std::any_of(layout.identities.begin(), layout.identities.end(),
-                                 [&](const Identity& identity) { return identity.id == robot.id; });
-  if (!layout.is_anonymous() && !known) {
-    throw map.error("id", "the layout has no identity " + std::to_string(robot.id),
-                    "choose one of the layout's identities");
+  const std::vector<int> ids = layout.robot_ids();
+  robot.id =
+      map.integer_or("id", ids.empty() ? static_cast<int>(scene.robots.size()) : ids.front());
+  if (!layout.has_robot(robot.id)) {
+    throw map.error("id", "the layout has no robot " + std::to_string(robot.id),
+                    "choose one of the layout's robots");
   }
   shelf.read_body(map, robot.layout);
   if (const auto path = map.map_if_present("path")) robot.path = read_robot_path(*path);
@@ -194,9 +193,9 @@ void read_random_robots(const YamlMap& map, LayoutShelf& shelf, Scene& scene) {
     for (std::size_t i = 0; i < layout.teams.size(); ++i) wish.teams.push_back(i);
   }
   wish.count = map.integer("count", {1, 1000});
-  const std::size_t names = wish.teams.size() * layout.identities.size();
+  const std::size_t names = wish.teams.size() * layout.robot_ids().size();
   if (!layout.is_anonymous() && static_cast<std::size_t>(wish.count) > names) {
-    throw map.error("count", "there are only " + std::to_string(names) + " teams and identities",
+    throw map.error("count", "there are only " + std::to_string(names) + " teams and robots",
                     "ask for fewer robots");
   }
   if (wish.teams.empty()) throw map.error("teams", "the list is empty", "name a team");

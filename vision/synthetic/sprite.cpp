@@ -31,6 +31,9 @@ double Sprite::extent_m() const {
   for (const Disc& disc : discs) {
     extent = std::max(extent, disc.position_m.norm() + disc.radius_m);
   }
+  for (const PaintedTag& tag : tags) {
+    extent = std::max(extent, tag.mount.position_robot_m.norm() + tag.extent_m());
+  }
   return extent;
 }
 
@@ -117,15 +120,20 @@ void SpritePainter::prepare_instants(const Sprite& sprite, const cv::Rect& regio
         static_cast<float>(fineness_ * std::sqrt(std::abs(scale.determinant())));
     instant.layers.clear();
     const auto add = [&](const Eigen::Vector2d& position_m, double radius_m,
-                         const Sprite::Disc* disc) {
+                         const Sprite::Disc* disc, const PaintedTag* tag) {
       const Eigen::Vector2d place_m = instant.place_m + world_from_sprite * position_m;
       const PixelPoint pixel = camera_.project({place_m.x(), place_m.y(), sprite.height_m});
-      instant.layers.push_back({disc, (pixel.x() - fine_origin_u_px_) * fineness_,
+      instant.layers.push_back({disc, tag, (pixel.x() - fine_origin_u_px_) * fineness_,
                                 (pixel.y() - fine_origin_v_px_) * fineness_,
                                 1.1 * scale.norm() * radius_m * fineness_ + 2.0});
     };
-    if (sprite.body) add(Eigen::Vector2d::Zero(), sprite.body->radius_m, nullptr);
-    for (const Sprite::Disc& disc : sprite.discs) add(disc.position_m, disc.radius_m, &disc);
+    if (sprite.body) add(Eigen::Vector2d::Zero(), sprite.body->radius_m, nullptr, nullptr);
+    for (const Sprite::Disc& disc : sprite.discs) {
+      add(disc.position_m, disc.radius_m, &disc, nullptr);
+    }
+    for (const PaintedTag& tag : sprite.tags) {
+      add(tag.mount.position_robot_m, tag.extent_m(), nullptr, &tag);
+    }
   }
 }
 
@@ -191,13 +199,9 @@ void SpritePainter::paint_fine_row(const Sprite& sprite, const LocalPlaneMap& ma
   }
 }
 
-void SpritePainter::paint_layer(const Sprite& sprite, const Instant& instant, const Layer& layer,
-                                int row) {
-  const double dv = row - layer.row;
-  if (std::abs(dv) > layer.reach) return;
-  const double half = std::sqrt(layer.reach * layer.reach - dv * dv) + 2.0;
-  const int begin = std::clamp(static_cast<int>(layer.column - half), 0, fine_columns_);
-  const int end = std::clamp(static_cast<int>(layer.column + half) + 1, begin, fine_columns_);
+/// Shares of the samples [begin, end) in a disc or the body.
+void SpritePainter::cover_shape(const Sprite& sprite, const Instant& instant, const Layer& layer,
+                                int begin, int end) {
   const Sprite::Disc* disc = layer.disc;
   const Eigen::Vector2f centre =
       disc != nullptr ? disc->position_m.cast<float>().eval() : Eigen::Vector2f::Zero().eval();
@@ -214,12 +218,30 @@ void SpritePainter::paint_layer(const Sprite& sprite, const Instant& instant, co
     const float share = 0.5F - outside * scale;
     coverage_[i] = share < 0.0F ? 0.0F : (share > 1.0F ? 1.0F : share);
   }
+}
+
+void SpritePainter::paint_layer(const Sprite& sprite, const Instant& instant, const Layer& layer,
+                                int row) {
+  const double dv = row - layer.row;
+  if (std::abs(dv) > layer.reach) return;
+  const double half = std::sqrt(layer.reach * layer.reach - dv * dv) + 2.0;
+  const int begin = std::clamp(static_cast<int>(layer.column - half), 0, fine_columns_);
+  const int end = std::clamp(static_cast<int>(layer.column + half) + 1, begin, fine_columns_);
+  if (layer.tag != nullptr) {
+    paint_tag(*layer.tag, local_x_.data(), local_y_.data(), begin, end,
+              1.0F / instant.fine_per_metre, row_.data());
+    return;
+  }
+  cover_shape(sprite, instant, layer, begin, end);
+  const Sprite::Disc* disc = layer.disc;
   const Reflectance& colour = disc != nullptr ? disc->colour : sprite.body->colour;
   const Eigen::Array4f paint(colour[0], colour[1], colour[2], 1.0F);
   if (disc == nullptr || disc->shading == 0.0) {
     for (int i = begin; i < end; ++i) row_[i] += coverage_[i] * (paint - row_[i]);
     return;
   }
+  const Eigen::Vector2f centre = disc->position_m.cast<float>();
+  const auto radius = static_cast<float>(disc->radius_m);
   const auto shading = static_cast<float>(disc->shading) / (radius * radius);
   for (int i = begin; i < end; ++i) {
     const float dx = local_x_[i] - centre.x();

@@ -10,10 +10,12 @@
 #include "vision/synthetic/robot_path.h"
 #include "vision/synthetic/scene.h"
 #include "vision/synthetic/scene_light.h"
+#include "vision/synthetic/tag_paint.h"
 
 namespace nadir::vision {
 
-/// Round marks on one plane, with or without a plate under them, at one place: a robot or a ball.
+/// Round marks and tags on one plane, with or without a plate under them, at one place: a robot or
+/// a ball.
 struct Sprite {
   struct Disc {
     Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< in the sprite's own frame
@@ -27,6 +29,7 @@ struct Sprite {
   RobotMotion motion;
   std::optional<RobotBody> body;
   std::vector<Disc> discs;
+  std::vector<PaintedTag> tags;
 
   /// Radius of a circle about the origin that holds everything.
   double extent_m() const;
@@ -55,7 +58,8 @@ class SpritePainter {
  private:
   /// A shape of a sprite in one instant of the exposure, and where to look for it on the fine grid.
   struct Layer {
-    const Sprite::Disc* disc = nullptr;  ///< null: the body
+    const Sprite::Disc* disc = nullptr;  ///< null: the body or a tag
+    const PaintedTag* tag = nullptr;
     double column = 0.0;
     double row = 0.0;
     double reach = 0.0;
@@ -73,6 +77,8 @@ class SpritePainter {
   int instants_of(const Sprite& sprite) const;
   void prepare_instants(const Sprite& sprite, const cv::Rect& region);
   void paint_fine_row(const Sprite& sprite, const LocalPlaneMap& map, int row, double v_px);
+  void cover_shape(const Sprite& sprite, const Instant& instant, const Layer& layer, int begin,
+                   int end);
   void paint_layer(const Sprite& sprite, const Instant& instant, const Layer& layer, int row);
   void shade_fine_row(const ShadowEdge& shadow, int row, double first_u_px, double v_px);
   void blur_into(SpritePatch& patch);

@@ -35,10 +35,7 @@ std::optional<RobotPlacement> placement_of(const Scene& scene, const LiveRobot& 
   for (const std::size_t index : scene.live_robots->layouts) {
     const MarkerLayout& layout = scene.layouts[index];
     const auto team = std::ranges::find(layout.teams, robot.team, &Team::name);
-    const bool known =
-        layout.is_anonymous() ||
-        std::ranges::find(layout.identities, robot.id, &Identity::id) != layout.identities.end();
-    if (team == layout.teams.end() || !known) continue;
+    if (team == layout.teams.end() || !layout.has_robot(robot.id)) continue;
     return RobotPlacement{index, static_cast<std::size_t>(team - layout.teams.begin()), robot.id,
                           robot.motion};
   }
