@@ -1,27 +1,12 @@
 #include "tracker/pose_from_markers.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <span>
 
+#include "tracker/pixel_near.h"
 #include "tracker/rigid_fit.h"
 
 namespace nadir::tracker {
-namespace {
-
-// Where the image shows a place that is a few pixels at most from `near_px`: two Newton steps, as
-// the map is all but linear over a robot. Exact to far below 0.01 px.
-vision::PixelPoint pixel_near(const calibration::PlaneMap& map, const Eigen::Vector2d& place_m,
-                              const vision::PixelPoint& near_px) {
-  vision::PixelPoint pixel = near_px;
-  for (int step = 0; step < 2; ++step) {
-    const Eigen::Vector2d missing_m = place_m - map.plane_from_pixel(pixel);
-    pixel += map.jacobian_m_per_px(pixel).inverse() * missing_m;
-  }
-  return pixel;
-}
-
-}  // namespace
 
 MarkerPose pose_from_markers(const vision::RobotObservation& observation,
                              const vision::MarkerLayout& layout, const calibration::PlaneMap& map,

@@ -1,5 +1,6 @@
 #include "vision/tag_search.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

@@ -1,0 +1,190 @@
+#include "tracker/tag_robots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "tracker/pixel_near.h"
+#include "vision/input/input_error.h"
+
+namespace nadir::tracker {
+namespace {
+
+constexpr double kSmallestTag_px = 12.0;
+constexpr double kFastest_mps = 4.0;         // where nothing is known of a robot's motion
+constexpr double kAcceleration_mps2 = 10.0;  // with a push: what a prediction may be wrong by
+constexpr double kForgotten_s = 0.25;
+constexpr double kMargin_px = 3.0;
+constexpr double kMostMargin_sides = 2.0;  // beyond, the search for newcomers is cheaper
+constexpr double kMostMisshape = 0.12;     // of a side, and 1.5 px more
+constexpr double kFullMargin = 0.15;  // of the contrast: a decision margin that leaves no doubt
+// Two tags tell of one robot: they agree to this share of a side, and to this angle, rad.
+constexpr double kAgreement_sides = 0.1;
+
+double seconds(vision::CaptureTime::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+std::vector<vision::TagKind> search_kinds(const std::vector<TagRobotKind>& kinds, int width_px,
+                                          int height_px) {
+  std::vector<vision::TagKind> result;
+  for (const TagRobotKind& kind : kinds) {
+    result.push_back(
+        {kind.layout,
+         vision::PixelScaleGrid(width_px, height_px, [&kind](const vision::PixelPoint& pixel) {
+           return kind.map.jacobian_m_per_px(pixel);
+         })});
+    const double side_px = kind.layout.size_m * result.back().scale.largest_pixels_per_metre();
+    if (side_px >= kSmallestTag_px) continue;
+    throw vision::InputError(
+        {}, fmt::format("tags of {:g} m are {:.1f} px wide at most", kind.layout.size_m, side_px),
+        fmt::format("tags are found from {:g} px on: make them larger or hang the camera lower",
+                    kSmallestTag_px));
+  }
+  return result;
+}
+
+}  // namespace
+
+TagRobots::TagRobots(std::vector<TagRobotKind> kinds, int width_px, int height_px)
+    : kinds_(std::move(kinds)), search_(search_kinds(kinds_, width_px, height_px)) {}
+
+void TagRobots::detect(const vision::Frame& frame) {
+  if (frame.capture_time < time_) memories_.clear();  // a recording that starts again
+  time_ = frame.capture_time;
+  std::erase_if(memories_,
+                [this](const Memory& robot) { return seconds(time_ - robot.time) > kForgotten_s; });
+  expected_.clear();
+  for (const Memory& robot : memories_) expect_tags(robot, frame.capture_time);
+  search_.search(frame.image, expected_, {}, lost_one_, seen_);
+}
+
+// Where the robot's tags should be now.
+void TagRobots::expect_tags(const Memory& robot, vision::CaptureTime time) {
+  const TagRobotKind& kind = kinds_[robot.kind];
+  const double ahead_s = seconds(time - robot.time);
+  const Eigen::Vector3d move = robot.velocity * ahead_s;
+  const Eigen::Vector2d place_m = robot.pose.position_m() + move.head<2>();
+  const double heading_rad = robot.pose.heading_rad + move.z();
+  const Eigen::Matrix2d px_per_m = kind.map.jacobian_m_per_px(robot.centre_px).inverse();
+  const double scale = std::sqrt(std::abs(px_per_m.determinant()));
+  const double side_px = kind.layout.size_m * scale;
+  const double unknown_m =
+      robot.has_velocity ? kAcceleration_mps2 * ahead_s * ahead_s : kFastest_mps * ahead_s;
+  const double margin_px = kMargin_px + std::min(scale * unknown_m, kMostMargin_sides * side_px);
+  for (const vision::MountedTag& tag : kind.layout.tags_of(robot.id)) {
+    const double c = std::cos(heading_rad);
+    const double s = std::sin(heading_rad);
+    const Eigen::Vector2d& arm = tag.mount.position_robot_m;
+    const Eigen::Vector2d tag_m =
+        place_m + Eigen::Vector2d(c * arm.x() - s * arm.y(), s * arm.x() + c * arm.y());
+    expected_.push_back({pixel_near(kind.map, tag_m, robot.centre_px), side_px, margin_px});
+  }
+}
+
+void TagRobots::locate(std::vector<RejectionReport>& rejected) {
+  gather(rejected);
+  // The surest tag of a robot first: it decides which others agree with it.
+  std::ranges::stable_sort(sightings_, std::ranges::greater{}, &Sighting::confidence);
+  robots_.clear();
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    if (!sightings_[i].taken) robots_.push_back(robot_of(i));
+  }
+  std::ranges::stable_sort(robots_, std::ranges::greater{}, &TagRobot::tag_count);
+  remember();
+}
+
+void TagRobots::gather(std::vector<RejectionReport>& rejected) {
+  sightings_.clear();
+  for (const vision::TagSighting& seen : seen_.tags) {
+    const TagRobotKind& kind = kinds_[seen.kind];
+    const auto tag = kind.layout.find(seen.tag.id);
+    if (!tag) continue;
+    const TagPose pose = tag_pose(seen.tag, kind.layout.size_m, tag->mount, kind.map);
+    if (pose.misshape > kMostMisshape + 1.5 / seen.side_px) {
+      rejected.push_back({pose.centre_px, "tag is no square on the plane of the tags"});
+      continue;
+    }
+    // A bit that was corrected halves it.
+    const double certain = std::min(1.0, seen.tag.decision_margin / (kFullMargin * 255.0));
+    sightings_.push_back(
+        {.kind = seen.kind,
+         .robot_id = tag->robot_id,
+         .pose = pose,
+         .pixels = static_cast<int>(std::lround(seen.side_px * seen.side_px)),
+         .confidence = std::max(0.3, certain) * (seen.tag.corrected_bits == 0 ? 1.0 : 0.5)});
+  }
+  for (const vision::RejectedCandidate& candidate : seen_.rejected) {
+    rejected.push_back({candidate.centre_px, vision::reject_reason_text(candidate.reason)});
+  }
+}
+
+// The robot of one tag and of all others that agree with it.
+TagRobot TagRobots::robot_of(std::size_t first) {
+  const Sighting& lead = sightings_[first];
+  const TagRobotKind& kind = kinds_[lead.kind];
+  TagRobot robot;
+  robot.layout_index = kind.layout_index;
+  robot.id = lead.robot_id;
+  robot.confidence = lead.confidence;
+  fused_.clear();
+  const fusion::PlanarPose pose =
+      pose_from_tags(std::span(&lead.pose, 1), kind.map).pose_world_robot;
+  for (std::size_t i = first; i < sightings_.size(); ++i) {
+    Sighting& tag = sightings_[i];
+    if (tag.taken || tag.kind != lead.kind || tag.robot_id != lead.robot_id) continue;
+    const fusion::PlanarPose own =
+        pose_from_tags(std::span(&tag.pose, 1), kind.map).pose_world_robot;
+    const double apart_m = (own.position_m() - pose.position_m()).norm();
+    const double lever_m = tag.pose.mount.position_robot_m.norm();
+    const double turned_rad = std::abs(fusion::wrap_angle(own.heading_rad - pose.heading_rad));
+    const double limit_m = kAgreement_sides * (kind.layout.size_m + lever_m);
+    if (i != first && (apart_m > limit_m || turned_rad > kAgreement_sides)) continue;
+    tag.taken = true;
+    fused_.push_back(tag.pose);
+    if (robot.tag_count < vision::kMaxDiscs) {
+      robot.pixels[static_cast<std::size_t>(robot.tag_count++)] = tag.pixels;
+    }
+  }
+  robot.pose = pose_from_tags(fused_, kind.map);
+  return robot;
+}
+
+void TagRobots::remember() {
+  lost_one_ = false;
+  for (const TagRobot& robot : robots_) {
+    const auto kind = static_cast<std::size_t>(
+        std::ranges::find(kinds_, robot.layout_index, &TagRobotKind::layout_index) -
+        kinds_.begin());
+    auto memory = std::ranges::find_if(
+        memories_, [&](const Memory& each) { return each.kind == kind && each.id == robot.id; });
+    if (memory == memories_.end()) {
+      memories_.push_back({});
+      memory = memories_.end() - 1;
+      memory->kind = kind;
+      memory->id = robot.id;
+    } else if (memory->time == time_) {
+      continue;  // a second claim of the number
+    }
+    const double passed_s = seconds(time_ - memory->time);
+    const fusion::PlanarPose& now = robot.pose.pose_world_robot;
+    const double moved_m = (now.position_m() - memory->pose.position_m()).norm();
+    memory->has_velocity = passed_s > 0.0 && moved_m < kFastest_mps * passed_s &&
+                           memory->time != vision::CaptureTime{};
+    if (memory->has_velocity) {
+      memory->velocity << (now.position_m() - memory->pose.position_m()) / passed_s,
+          fusion::wrap_angle(now.heading_rad - memory->pose.heading_rad) / passed_s;
+    } else {
+      memory->velocity.setZero();
+    }
+    memory->pose = now;
+    memory->centre_px = robot.pose.centre_px;
+    memory->time = time_;
+  }
+  lost_one_ =
+      std::ranges::any_of(memories_, [this](const Memory& robot) { return robot.time != time_; });
+}
+
+}  // namespace nadir::tracker

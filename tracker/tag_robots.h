@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "calibration/plane_map.h"
+#include "tracker/pose_from_markers.h"
+#include "tracker/pose_report.h"
+#include "tracker/tag_pose.h"
+#include "vision/frame.h"
+#include "vision/tag_search.h"
+
+namespace nadir::tracker {
+
+/// One layout of robots with tags.
+struct TagRobotKind {
+  vision::TagLayout layout;
+  calibration::PlaneMap map;     ///< of the plane of the tags
+  std::size_t layout_index = 0;  ///< in the pipeline's setup
+};
+
+/// A robot that a frame shows by one or more of its tags.
+struct TagRobot {
+  std::size_t layout_index = 0;
+  int id = 0;
+  MarkerPose pose;
+  std::array<int, vision::kMaxDiscs> pixels{};  ///< of each tag's square
+  int tag_count = 0;                            ///< entries of `pixels` that count
+  double confidence = 0.0;
+};
+
+/// Sees the robots with tags of one camera, and remembers where they were and how they moved: so
+/// that their tags are looked for there first. Poses come from the frame alone. Not thread-safe.
+class TagRobots {
+ public:
+  /// For frames of this size. `kinds`: at least one. Throws InputError if tags are too small to be
+  /// seen.
+  TagRobots(std::vector<TagRobotKind> kinds, int width_px, int height_px);
+
+  /// Finds tags in the frame.
+  void detect(const vision::Frame& frame);
+  /// Their robots' poses. Tags that speak against each other of one robot give several robots of
+  /// one number, the one with more and surer tags first. What is no robot goes to `rejected`.
+  void locate(std::vector<RejectionReport>& rejected);
+
+  /// Of the last frame; valid until the next.
+  std::span<const TagRobot> robots() const { return robots_; }
+
+ private:
+  // A robot as it was seen last.
+  struct Memory {
+    std::size_t kind = 0;
+    int id = 0;
+    fusion::PlanarPose pose;
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s, m/s, rad/s
+    bool has_velocity = false;
+    vision::PixelPoint centre_px = vision::PixelPoint::Zero();
+    vision::CaptureTime time{};
+  };
+  // A tag of this frame, before robots are made of them.
+  struct Sighting {
+    std::size_t kind = 0;
+    int robot_id = 0;
+    TagPose pose;
+    int pixels = 0;
+    double confidence = 0.0;
+    bool taken = false;
+  };
+
+  void expect_tags(const Memory& robot, vision::CaptureTime time);
+  void gather(std::vector<RejectionReport>& rejected);
+  TagRobot robot_of(std::size_t first);
+  void remember();
+
+  std::vector<TagRobotKind> kinds_;
+  vision::TagSearch search_;
+  vision::CaptureTime time_{};
+  std::vector<Memory> memories_;
+  std::vector<vision::ExpectedTag> expected_;
+  vision::TagSearchResult seen_;
+  std::vector<Sighting> sightings_;
+  std::vector<TagPose> fused_;
+  std::vector<TagRobot> robots_;
+  bool lost_one_ = false;
+};
+
+}  // namespace nadir::tracker
