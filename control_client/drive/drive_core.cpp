@@ -96,13 +96,9 @@ const tracker::WireWheelCommand& DriveCore::step(Timestamp now, std::int64_t per
   has_ticked_ = ticks > 0;
   if (has_ticked_) tick(ticks);
   const double dt_s = static_cast<double>(periods) * settings_.control.inner_step_s();
-  const bool blind = verdict().reason == tracker::ClientReason::kNoOdometry ||
-                     verdict().mode == tracker::ClientMode::kEmergency ||
-                     verdict().mode == tracker::ClientMode::kStarting;
   command_.wheels = {};
   command_.wheels.count = static_cast<std::size_t>(model_->wheel_count());
-  if (blind) {
-    // Motors without voltage brake by themselves, and need no measurement.
+  if (motors_are_off()) {
     loop_.restart_inner();
   } else if (settings_.output == WheelCommandKind::kVolts) {
     const WheelVector volts = loop_.inner_step(measured_rates_, dt_s);
@@ -112,6 +108,15 @@ const tracker::WireWheelCommand& DriveCore::step(Timestamp now, std::int64_t per
   measured_for_s_ = 0.0;
   fill_command();
   return command_;
+}
+
+// Motors without voltage brake by themselves: where nothing can be measured, where somebody wants
+// it so, and once the robot stands, as the noise of its encoders would make it creep.
+bool DriveCore::motors_are_off() const {
+  constexpr double kBraking_s = 0.5;
+  return verdict().reason == tracker::ClientReason::kNoOdometry ||
+         verdict().mode == tracker::ClientMode::kEmergency ||
+         verdict().mode == tracker::ClientMode::kStarting || stands_for_s_ > kBraking_s;
 }
 
 void DriveCore::fill_command() {
@@ -143,9 +148,11 @@ void DriveCore::tick(std::int64_t ticks) {
   clock_jumped_ = false;
   if (!now.drives() || !estimate_) {
     saturated_share_ = 0.0;
+    stands_for_s_ += dt_s;
     loop_.tick_at(Eigen::Vector3d::Zero());
     return;
   }
+  stands_for_s_ = 0.0;
   if (stood) {
     loop_.restart_outer();
     plan_.start_from(estimate_->pose);

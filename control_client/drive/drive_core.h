@@ -77,6 +77,7 @@ class DriveCore {
   void tick(std::int64_t ticks);
   SafetyView view() const;
   void follow(double dt_s);
+  bool motors_are_off() const;
   void fill_command();
   double largest_position_sigma_m() const;
 
@@ -97,6 +98,7 @@ class DriveCore {
   bool interrupted_ = false;
   bool clock_jumped_ = false;
   double command_gap_s_ = 0.0;
+  double stands_for_s_ = 0.0;
   double saturated_share_ = 0.0;
   std::optional<fusion::Timestamp> last_odometry_;  // arrival, in steps' time
   bool has_new_odometry_ = false;

@@ -42,6 +42,9 @@ class SimulatedBase : public RobotBase {
   void command(const tracker::WireWheelCommand& command, fusion::Timestamp now) override;
   std::optional<fusion::PlanarPose> truth_at(fusion::Timestamp time) const override;
 
+  /// Somebody carries the robot away: x m, y m, heading rad.
+  void displace(const Eigen::Vector3d& by) { plant_.displace(by); }
+
   /// Whether the last step's command was valid no longer.
   bool stopped_itself() const { return stopped_itself_; }
   const Plant& plant() const { return plant_; }

@@ -1,0 +1,242 @@
+// The onboard process in simulated time: it drives, and it gets over everything that happens to it.
+
+#include "control_client/drive/drive_core.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/control_client/drive_rehearsal.h"
+
+namespace nadir::control_client {
+namespace {
+
+using tracker::ClientMode;
+using tracker::ClientReason;
+
+struct Quality {
+  double position_rms_m = 0.0;
+  double heading_rms_rad = 0.0;
+  double tracking_rms_m = 0.0;
+};
+
+Quality quality_of(const std::vector<RehearsalRow>& rows) {
+  Quality quality;
+  double estimated = 0.0;
+  double followed = 0.0;
+  for (const RehearsalRow& row : rows) {
+    if (!row.estimate) continue;
+    const Eigen::Vector3d error = fusion::pose_difference(row.estimate->pose, row.truth);
+    quality.position_rms_m += error.head<2>().squaredNorm();
+    quality.heading_rms_rad += error.z() * error.z();
+    estimated += 1.0;
+    if (row.phase != MotionPlan::Phase::kFollow) continue;
+    quality.tracking_rms_m += (row.truth.position_m() - row.nominal.pose.head<2>()).squaredNorm();
+    followed += 1.0;
+  }
+  quality.position_rms_m = std::sqrt(quality.position_rms_m / estimated);
+  quality.heading_rms_rad = std::sqrt(quality.heading_rms_rad / estimated);
+  quality.tracking_rms_m = std::sqrt(quality.tracking_rms_m / followed);
+  return quality;
+}
+
+/// Whether some row has this mode and reason.
+bool was(const std::vector<RehearsalRow>& rows, ClientMode mode, ClientReason reason) {
+  return std::ranges::any_of(rows, [&](const RehearsalRow& row) {
+    return row.verdict.mode == mode && row.verdict.reason == reason;
+  });
+}
+
+bool drives_at_the_end(const std::vector<RehearsalRow>& rows) {
+  return rows.back().verdict.mode == ClientMode::kDriving;
+}
+
+double way_m(const std::vector<RehearsalRow>& rows) {
+  return (rows.back().truth.position_m() - rows.front().truth.position_m()).norm();
+}
+
+DriveSettings repeating() {
+  DriveSettings settings;
+  settings.plan.repeats = true;
+  return settings;
+}
+
+Rehearsal on(const char* trajectory, std::uint64_t seed = 1) {
+  return {repeating(), standard_trajectory(trajectory), seed};
+}
+
+TEST(DriveCore, KnowsWhereItIsAndFollowsEveryTrajectory) {
+  for (const char* trajectory : {"square-turning", "square", "circle", "rose3", "rose4"}) {
+    Rehearsal rehearsal = on(trajectory);
+    rehearsal.run(1.0);
+    const Quality quality = quality_of(rehearsal.run(20.0));
+    EXPECT_LT(quality.position_rms_m, 0.002) << trajectory;
+    EXPECT_LT(quality.heading_rms_rad, 0.75 * M_PI / 180.0) << trajectory;
+    EXPECT_LT(quality.tracking_rms_m, 0.004) << trajectory;
+    EXPECT_EQ(rehearsal.core().state().counts.ticks_missed, 0U);
+  }
+}
+
+TEST(DriveCore, TheSameEventsGiveTheSameDrive) {
+  Rehearsal first = on("rose3", 5);
+  Rehearsal second = on("rose3", 5);
+  first.run(5.0);
+  second.run(5.0);
+  EXPECT_EQ(first.base().plant().pose(), second.base().plant().pose());
+  Rehearsal other = on("rose3", 6);
+  other.run(5.0);
+  EXPECT_NE(first.base().plant().pose(), other.base().plant().pose());
+}
+
+TEST(DriveCore, RobotsWithFirmwareGetRimSpeedsOrBodyRates) {
+  for (const auto output :
+       {tracker::WheelCommandKind::kRimSpeeds, tracker::WheelCommandKind::kBodyRates}) {
+    DriveSettings settings = repeating();
+    settings.output = output;
+    Rehearsal rehearsal(settings, standard_trajectory("circle"), 1);
+    rehearsal.run(2.0);
+    const Quality quality = quality_of(rehearsal.run(10.0));
+    EXPECT_LT(quality.position_rms_m, 0.002);
+    EXPECT_LT(quality.tracking_rms_m, 0.006);
+  }
+}
+
+TEST(DriveCore, ComesFromWhereverItStands) {
+  Rehearsal rehearsal(repeating(), standard_trajectory("circle"), 1,
+                      Eigen::Vector3d(-0.6, -0.5, 2.5));
+  const auto rows = rehearsal.run(12.0);
+  EXPECT_EQ(rows.back().phase, MotionPlan::Phase::kFollow);
+  EXPECT_LT(quality_of(rows).tracking_rms_m, 0.004);
+  EXPECT_FALSE(was(rows, ClientMode::kStopped, ClientReason::kOffTrack));
+}
+
+TEST(DriveCore, ASecondWithoutAnyPoseSlowsItDownOnly) {
+  Rehearsal rehearsal = on("circle");
+  rehearsal.run(8.0);
+  rehearsal.tracker_is_up = false;
+  const auto dark = rehearsal.run(1.0);
+  rehearsal.tracker_is_up = true;
+  const auto light = rehearsal.run(3.0);
+  EXPECT_TRUE(was(dark, ClientMode::kSlow, ClientReason::kPoseTooOld));
+  EXPECT_FALSE(was(light, ClientMode::kStopped, ClientReason::kPoseTooOld));
+  EXPECT_TRUE(drives_at_the_end(light));
+  EXPECT_LT(quality_of(dark).position_rms_m, 0.03);
+}
+
+TEST(DriveCore, WithoutATrackerItStandsUntilOneIsThereAgain) {
+  Rehearsal rehearsal = on("circle");
+  rehearsal.run(8.0);
+  rehearsal.tracker_is_up = false;
+  rehearsal.run(2.5);
+  const auto standing = rehearsal.run(1.0);
+  EXPECT_EQ(standing.back().verdict.reason, ClientReason::kPoseTooOld);
+  EXPECT_LT(way_m(standing), 1e-4);
+  // Another run of the tracker, on a machine with another clock.
+  rehearsal.tracker_is_up = true;
+  rehearsal.tracker_epoch = 78;
+  rehearsal.vision.clock_ahead_ns = -9'000'000'000;
+  const auto rows = rehearsal.run(6.0);
+  EXPECT_TRUE(drives_at_the_end(rows));
+  EXPECT_EQ(rows.back().phase, MotionPlan::Phase::kFollow);
+  EXPECT_NEAR(rows.front().trajectory_s, standing.back().trajectory_s, 1e-9) << "time had paused";
+  EXPECT_LT(quality_of(rehearsal.run(5.0)).position_rms_m, 0.002);
+}
+
+TEST(DriveCore, EmergencyStopsHoldItUntilTheyAreReleased) {
+  Rehearsal rehearsal = on("circle");
+  rehearsal.run(5.0);
+  tracker::WireEmergencyStop stop;
+  rehearsal.core().apply(stop);
+  const auto braking = rehearsal.run(0.6);
+  EXPECT_EQ(braking.front().verdict.mode, ClientMode::kEmergency);
+  EXPECT_LT(way_m(braking), 0.08) << "the motors brake without voltage";
+  EXPECT_LT(way_m(rehearsal.run(2.0)), 0.005);
+  stop.engaged = false;
+  rehearsal.core().apply(stop);
+  EXPECT_TRUE(drives_at_the_end(rehearsal.run(1.0)));
+  EXPECT_LT(quality_of(rehearsal.run(5.0)).tracking_rms_m, 0.004);
+}
+
+TEST(DriveCore, BlindWithoutOdometryItSwitchesTheMotorsOff) {
+  Rehearsal rehearsal = on("circle");
+  rehearsal.run(5.0);
+  rehearsal.odometry_is_up = false;
+  const auto rows = rehearsal.run(1.5);
+  EXPECT_TRUE(was(rows, ClientMode::kStopped, ClientReason::kNoOdometry));
+  EXPECT_LT(rehearsal.base().plant().body_rates().norm(), 1e-3);
+  rehearsal.odometry_is_up = true;
+  EXPECT_TRUE(drives_at_the_end(rehearsal.run(3.0)));
+  EXPECT_LT(quality_of(rehearsal.run(5.0)).position_rms_m, 0.002);
+}
+
+TEST(DriveCore, CarriedAwayItStopsAndDrivesBack) {
+  Rehearsal rehearsal = on("circle");
+  rehearsal.run(5.0);
+  rehearsal.base().displace({0.5, -0.3, 1.5});
+  const auto rows = rehearsal.run(8.0);
+  EXPECT_TRUE(was(rows, ClientMode::kStopped, ClientReason::kOffTrack));
+  EXPECT_TRUE(drives_at_the_end(rows));
+  EXPECT_EQ(rows.back().phase, MotionPlan::Phase::kFollow);
+  EXPECT_LT(quality_of(rehearsal.run(5.0)).tracking_rms_m, 0.004);
+}
+
+TEST(DriveCore, TheBaseStopsItselfWhenTheProcessSleeps) {
+  Rehearsal rehearsal = on("circle");
+  rehearsal.run(5.0);
+  rehearsal.sleep_steps = 60;  // 0.3 s
+  const auto rows = rehearsal.run(3.0);
+  EXPECT_TRUE(was(rows, ClientMode::kStopped, ClientReason::kOther));
+  EXPECT_TRUE(drives_at_the_end(rows));
+  EXPECT_EQ(rehearsal.core().state().counts.ticks_missed, 15U);
+  EXPECT_FALSE(rehearsal.base().stopped_itself());
+  EXPECT_LT(quality_of(rehearsal.run(3.0)).position_rms_m, 0.002);
+}
+
+TEST(DriveCore, AMissedTickDoesNotDisturbIt) {
+  Rehearsal rehearsal = on("circle");
+  rehearsal.run(5.0);
+  std::vector<RehearsalRow> rows;
+  for (int i = 0; i < 20; ++i) {
+    rehearsal.sleep_steps = 7;
+    const auto more = rehearsal.run(0.5);
+    rows.insert(rows.end(), more.begin(), more.end());
+  }
+  EXPECT_GE(rehearsal.core().state().counts.ticks_missed, 10U);
+  const Quality quality = quality_of(rows);
+  EXPECT_LT(quality.position_rms_m, 0.002);
+  EXPECT_LT(quality.tracking_rms_m, 0.006);
+}
+
+TEST(DriveCore, ATrackersClockThatIsSetStopsItUntilTheNewTimeIsKnown) {
+  Rehearsal rehearsal = on("circle");
+  rehearsal.run(10.0);
+  rehearsal.tracker_clock_jump_ns = 2'000'000'000;
+  const auto rows = rehearsal.run(4.0);
+  EXPECT_TRUE(was(rows, ClientMode::kStopped, ClientReason::kClockJump));
+  EXPECT_TRUE(drives_at_the_end(rows));
+  EXPECT_LT(quality_of(rehearsal.run(5.0)).position_rms_m, 0.002);
+}
+
+TEST(DriveCore, TellsItsState) {
+  Rehearsal rehearsal = on("circle");
+  const auto rows = rehearsal.run(10.0);
+  const tracker::WireClientState state = rehearsal.core().state();
+  EXPECT_EQ(state.mode, ClientMode::kDriving);
+  EXPECT_NEAR(static_cast<double>(state.clock_offset_ns), 3.7e9, 2e5);
+  EXPECT_GT(state.counts.poses_accepted, 350U);
+  EXPECT_GT(state.counts.poses_lost, 20U);
+  EXPECT_EQ(state.counts.ticks, rows.size());
+  EXPECT_EQ(state.counts.odometry_samples, 2000U);
+  EXPECT_GT(state.pose_age_ns, 55'000'000);
+  EXPECT_LT(state.pose_age_ns, 300'000'000);
+  const Eigen::Vector3d error =
+      fusion::pose_difference(state.estimate_world_robot, state.nominal_world_robot);
+  EXPECT_NEAR(std::hypot(state.error_ahead_m, state.error_left_m), error.head<2>().norm(), 1e-12);
+  EXPECT_EQ(state.text, "");
+}
+
+}  // namespace
+}  // namespace nadir::control_client
