@@ -67,6 +67,10 @@ std::optional<Mosaic> mosaic_from_name(const std::string& name) {
   return static_cast<Mosaic>(index);
 }
 
+const std::string& mosaic_name(std::optional<Mosaic> mosaic) {
+  return mosaic ? kMosaicNames[static_cast<std::size_t>(*mosaic)] : kMosaicNames.back();
+}
+
 std::array<int, 4> native_channels(Mosaic mosaic) {
   switch (mosaic) {
     case Mosaic::kRggb:

@@ -18,6 +18,9 @@ extern const std::vector<std::string> kMosaicNames;
 /// Mosaic of one of the names; nothing for "auto".
 std::optional<Mosaic> mosaic_from_name(const std::string& name);
 
+/// The other way round.
+const std::string& mosaic_name(std::optional<Mosaic> mosaic);
+
 /// Channel (0 blue, 1 green, 2 red) that a pixel has measured; at [2 (v & 1) + (u & 1)].
 std::array<int, 4> native_channels(Mosaic mosaic);
 

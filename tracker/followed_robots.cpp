@@ -1,0 +1,206 @@
+#include "tracker/followed_robots.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace nadir::tracker {
+namespace {
+
+constexpr int kSightingsToFollow = 3;
+constexpr int kSearchesAfterLoss = 2;
+constexpr double kLongestPrediction_s = 0.2;
+constexpr double kSameRobot_m = 0.05;           // between expected and detected place
+constexpr double kLookMemory = 0.95;            // per frame
+constexpr unsigned kFramesPerMosaicCheck = 64;  // a camera keeps its sensor
+constexpr double kAgreement_sigmas = 6.0;
+constexpr double kAgreement_px = 1.0;
+
+double seconds(vision::CaptureTime::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+Eigen::Vector3d vector_of(const fusion::PlanarPose& pose) {
+  return {pose.x_m, pose.y_m, pose.heading_rad};
+}
+
+}  // namespace
+
+FollowedRobots::FollowedRobots(const std::vector<vision::MarkerLayout>& layouts,
+                               const std::vector<calibration::PlaneMap>& maps, int width_px,
+                               int height_px)
+    : layouts_(layouts), sensor_(width_px, height_px) {
+  for (std::size_t i = 0; i < layouts_.size(); ++i) {
+    grids_.push_back(std::make_unique<PlaneGrid>(maps[i], width_px, height_px));
+    aligners_.emplace_back(layouts_[i], *grids_.back());
+  }
+  robots_.reserve(256);
+  obstacles_.reserve(256);
+}
+
+void FollowedRobots::look_for_mosaic(const cv::Mat& image) {
+  if (stated_mosaic_) {
+    mosaic_ = *stated_mosaic_;
+  } else if (frames_ % kFramesPerMosaicCheck == 0) {
+    mosaic_ = recognise_mosaic(image);
+  }
+  ++frames_;
+}
+
+PoseGuess FollowedRobots::predict(const FollowedRobot& robot, vision::CaptureTime now) const {
+  const Eigen::Vector3d expected =
+      vector_of(robot.pose) + robot.rate * seconds(now - robot.last_seen);
+  return {{expected.x(), expected.y(), fusion::wrap_angle(expected.z())}, robot.aligned.centre_px};
+}
+
+void FollowedRobots::follow(const vision::Frame& frame) {
+  look_for_mosaic(frame.image);
+  const double gap_s = seconds(frame.capture_time - last_frame_);
+  last_frame_ = frame.capture_time;
+  if (gap_s <= 0.0 || gap_s > kLongestPrediction_s) {
+    robots_.clear();
+    full_searches_due_ = kSearchesAfterLoss;
+  }
+  needs_full_search_ = full_searches_due_ > 0;
+  full_searches_due_ = std::max(0, full_searches_due_ - 1);
+  for (FollowedRobot& robot : robots_) {
+    robot.found = false;
+    robot.continued = false;
+  }
+  for (FollowedRobot& robot : robots_) {
+    if (robot.sightings < kSightingsToFollow) {
+      needs_full_search_ = true;
+      continue;
+    }
+    align(frame, robot);
+    if (robot.found) continue;
+    robot.sightings = 0;
+    needs_full_search_ = true;
+    full_searches_due_ = kSearchesAfterLoss - 1;
+  }
+}
+
+// Plates of the other robots of a layout, where they are by now or are expected.
+void FollowedRobots::list_obstacles(std::size_t layout, const Eigen::Vector2d& except_m) {
+  obstacles_.clear();
+  const double radius_m = aligners_[layout].robot().plate.radius_m;
+  for (const FollowedRobot& other : robots_) {
+    if (other.layout != layout) continue;
+    const Eigen::Vector2d place_m = other.found
+                                        ? other.aligned.pose_world_robot.position_m()
+                                        : predict(other, last_frame_).pose_world_robot.position_m();
+    if ((place_m - except_m).norm() < radius_m) continue;  // itself: two robots have no room there
+    obstacles_.push_back({place_m, radius_m});
+  }
+}
+
+void FollowedRobots::align(const vision::Frame& frame, FollowedRobot& robot) {
+  const PoseGuess guess = predict(robot, frame.capture_time);
+  list_obstacles(robot.layout, guess.pose_world_robot.position_m());
+  robot.found = aligners_[robot.layout].align(frame.image, mosaic_, sensor_, guess, &robot.look,
+                                              obstacles_, robot.aligned);
+  if (!robot.found) return;
+  aligners_[robot.layout].teach(sensor_);
+  observe(robot);
+}
+
+// What was aligned, in the detector's words.
+void FollowedRobots::observe(FollowedRobot& robot) const {
+  const vision::MarkerLayout& layout = layouts_[robot.layout];
+  const PlaneGrid& grid = *grids_[robot.layout];
+  const fusion::PlanarPose& pose = robot.aligned.pose_world_robot;
+  const double c = std::cos(pose.heading_rad);
+  const double s = std::sin(pose.heading_rad);
+  const double m_per_px = grid.metres_per_pixel(robot.aligned.centre_px);
+  for (int i = 0; i < robot.observation.disc_count; ++i) {
+    const vision::Disc disc = layout.disc(i, robot.team, std::max(0, robot.identity));
+    const Eigen::Vector2d& p = disc.position_robot_m;
+    const Eigen::Vector2d place_m(pose.x_m + c * p.x() - s * p.y(),
+                                  pose.y_m + s * p.x() + c * p.y());
+    const AlignedDisc& aligned = robot.aligned.discs[static_cast<std::size_t>(i)];
+    vision::DiscObservation& seen = robot.observation.discs[static_cast<std::size_t>(i)];
+    seen.centre_px =
+        grid.pixel_near(place_m, robot.aligned.centre_px).value_or(robot.aligned.centre_px);
+    seen.expected_pixels = M_PI * disc.radius_m * disc.radius_m / (m_per_px * m_per_px);
+    seen.pixels = aligned.counts ? aligned.pixels : 0.0;
+    seen.contrast = aligned.contrast.norm();
+  }
+}
+
+bool FollowedRobots::refine(const vision::Frame& frame, std::size_t layout,
+                            const vision::RobotObservation& observation,
+                            const fusion::PlanarPose& detected, const vision::PixelPoint& centre_px,
+                            double deviation_px, AlignedPose& result) {
+  list_obstacles(layout, detected.position_m());
+  if (!aligners_[layout].align(frame.image, mosaic_, sensor_, {detected, centre_px}, nullptr,
+                               obstacles_, result) ||
+      result.counting_discs < observation.disc_count) {
+    return false;
+  }
+  const double apart_px = (result.centre_px - centre_px).norm();
+  if (apart_px > std::max(kAgreement_px, kAgreement_sigmas * deviation_px)) return false;
+  aligners_[layout].teach(sensor_);
+  return true;
+}
+
+void FollowedRobots::remember_aligned(std::size_t index, vision::CaptureTime now) {
+  FollowedRobot& robot = robots_[index];
+  const double passed_s = seconds(now - robot.last_seen);
+  const fusion::PlanarPose& pose = robot.aligned.pose_world_robot;
+  robot.rate = fusion::pose_difference(pose, robot.pose) / passed_s;
+  robot.pose = pose;
+  robot.last_seen = now;
+  robot.continued = true;
+  for (int i = 0; i < robot.observation.disc_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!robot.aligned.discs[k].counts) continue;
+    robot.look.contrast[k] = kLookMemory * robot.look.contrast[k] +
+                             (1.0 - kLookMemory) * robot.aligned.discs[k].contrast;
+  }
+}
+
+void FollowedRobots::remember_detected(std::size_t layout,
+                                       const vision::RobotObservation& observation,
+                                       const fusion::PlanarPose& pose, const AlignedPose* aligned,
+                                       vision::CaptureTime now) {
+  const auto same = [&](const FollowedRobot& robot) {
+    return !robot.continued && robot.layout == layout && robot.team == observation.team &&
+           robot.identity == observation.identity &&
+           (predict(robot, now).pose_world_robot.position_m() - pose.position_m()).norm() <
+               kSameRobot_m;
+  };
+  auto found = std::ranges::find_if(robots_, same);
+  if (found == robots_.end()) {
+    if (robots_.size() == robots_.capacity()) return;
+    robots_.emplace_back();
+    found = robots_.end() - 1;
+    found->layout = layout;
+    found->team = observation.team;
+    found->identity = observation.identity;
+  } else {
+    found->rate = fusion::pose_difference(pose, found->pose) /
+                  std::max(1e-6, seconds(now - found->last_seen));
+  }
+  found->pose = pose;
+  found->last_seen = now;
+  found->continued = true;
+  found->observation = observation;
+  // A robot that cannot be aligned where it was detected is detected again.
+  found->sightings = aligned != nullptr ? found->sightings + 1 : 0;
+  if (aligned == nullptr) {
+    found->aligned.centre_px = observation.discs[0].centre_px;
+    return;
+  }
+  found->aligned = *aligned;
+  for (int i = 0; i < observation.disc_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    found->look.contrast[k] = aligned->discs[k].contrast;
+  }
+}
+
+void FollowedRobots::end_frame() {
+  std::erase_if(robots_, [](const FollowedRobot& robot) { return !robot.continued; });
+}
+
+}  // namespace nadir::tracker

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <span>
+#include <vector>
+
+#include "calibration/plane_map.h"
+#include "fusion/planar_pose.h"
+#include "tracker/alignment/pose_aligner.h"
+#include "vision/frame.h"
+#include "vision/marker_layout.h"
+#include "vision/marker_observation.h"
+
+namespace nadir::tracker {
+
+/// A robot that was seen in the frame before, and how it is expected in the next.
+struct FollowedRobot {
+  std::size_t layout = 0;
+  int team = 0;
+  int identity = -1;  ///< index into MarkerLayout::identities, -1 for an anonymous robot
+  fusion::PlanarPose pose;
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< of x, y, heading; per second
+  vision::CaptureTime last_seen{};
+  int sightings = 0;  ///< in a row, read the same way
+  ExpectedLook look;
+  AlignedPose aligned;                   ///< in this frame, if `found`
+  vision::RobotObservation observation;  ///< the same in the detector's words
+  bool found = false;                    ///< in this frame, by alignment
+  bool continued = false;                ///< in this frame, by alignment or detection
+};
+
+/// The robots of one camera that are followed from frame to frame without being detected again:
+/// predict, align, verify. Only what the detector read the same way three times in a row is
+/// followed; whoever does not look as before is let go and must be detected again.
+class FollowedRobots {
+ public:
+  /// `maps`: of the planes of the layouts' marks.
+  FollowedRobots(const std::vector<vision::MarkerLayout>& layouts,
+                 const std::vector<calibration::PlaneMap>& maps, int width_px, int height_px);
+
+  /// Nothing: the mosaic is recognised by the frames' noise.
+  void set_mosaic(std::optional<Mosaic> mosaic) { stated_mosaic_ = mosaic; }
+
+  /// Aligns all robots that are followed with a new frame. A capture time before the last one, or
+  /// long after it, lets all of them go.
+  void follow(const vision::Frame& frame);
+  /// Robots; those with `found` were aligned with this frame.
+  std::span<const FollowedRobot> robots() const { return robots_; }
+  /// True if a robot was lost in this frame or the one before, or is too new to be followed: then
+  /// all of the frame must be searched.
+  bool needs_full_search() const { return needs_full_search_; }
+
+  /// Aligns a robot that was detected in this frame at a pose. False where alignment does not agree
+  /// with the detector: then what the detector measured is all that is known.
+  bool refine(const vision::Frame& frame, std::size_t layout,
+              const vision::RobotObservation& observation, const fusion::PlanarPose& detected,
+              const vision::PixelPoint& centre_px, double deviation_px, AlignedPose& result);
+
+  /// Remembers a robot that is reported in this frame under its own number.
+  void remember_aligned(std::size_t index, vision::CaptureTime now);
+  void remember_detected(std::size_t layout, const vision::RobotObservation& observation,
+                         const fusion::PlanarPose& pose, const AlignedPose* aligned,
+                         vision::CaptureTime now);
+  /// After all were remembered: lets go of those that were not.
+  void end_frame();
+
+  const SensorModel& sensor() const { return sensor_; }
+
+ private:
+  void look_for_mosaic(const cv::Mat& image);
+  PoseGuess predict(const FollowedRobot& robot, vision::CaptureTime now) const;
+  void align(const vision::Frame& frame, FollowedRobot& robot);
+  void observe(FollowedRobot& robot) const;
+  void list_obstacles(std::size_t layout, const Eigen::Vector2d& except_m);
+
+  std::vector<vision::MarkerLayout> layouts_;
+  std::vector<std::unique_ptr<PlaneGrid>> grids_;
+  std::vector<PoseAligner> aligners_;
+  SensorModel sensor_;
+  std::optional<Mosaic> stated_mosaic_;
+  Mosaic mosaic_ = Mosaic::kNone;
+  unsigned frames_ = 0;
+  vision::CaptureTime last_frame_{};
+  int full_searches_due_ = 1;
+  bool needs_full_search_ = true;
+  std::vector<FollowedRobot> robots_;
+  std::vector<Obstacle> obstacles_;
+};
+
+}  // namespace nadir::tracker
