@@ -6,14 +6,13 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <future>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/bench/bench_program.h"
 #include "tests/bench/json_file.h"
 #include "tests/support/accuracy_study.h"
 
@@ -118,16 +117,5 @@ int main(int argc, char** argv) {
   app.add_option("--json", options.json_file, "write the figures to this file too");
   app.add_option("--scene", options.only, "only this one");
   app.add_option("--frames", options.frames, "of each scene")->check(CLI::Range(1, 1000000));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    run(options);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "accuracy: %s\n", error.what());
-    return 1;
-  }
+  return nadir::bench::bench_main(argc, argv, app, [&options] { run(options); });
 }

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/bench/bench_program.h"
 #include "tests/bench/cold_search.h"
 #include "tests/bench/json_file.h"
 
@@ -123,16 +122,5 @@ int main(int argc, char** argv) {
   app.add_option("--scene", options.only, "only this one");
   app.add_option("--measurements", options.measurements, "of each variant, in turn")
       ->check(CLI::Range(1, 1000000));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    run(options);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "cold_search: %s\n", error.what());
-    return 1;
-  }
+  return nadir::bench::bench_main(argc, argv, app, [&options] { run(options); });
 }

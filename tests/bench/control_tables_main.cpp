@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <cstdio>
-#include <exception>
 #include <future>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -17,6 +15,7 @@
 
 #include "control_client/experiment/experiment_report.h"
 #include "control_client/experiment/experiment_runner.h"
+#include "tests/bench/bench_program.h"
 #include "tests/bench/control_reference.h"
 #include "tests/bench/json_file.h"
 
@@ -135,16 +134,5 @@ int main(int argc, char** argv) {
   app.add_option("--json", options.json_file, "write the figures to this file too");
   app.add_option("--experiment", options.only, "only this one");
   app.add_option("--runs", options.runs, "seeds of each case")->check(CLI::Range(1, 1000));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    run(options);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "control_tables: %s\n", error.what());
-    return 1;
-  }
+  return nadir::bench::bench_main(argc, argv, app, [&options] { run(options); });
 }

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "tests/bench/bench_program.h"
 #include "tests/bench/dds_latency.h"
 
 namespace {
@@ -116,15 +116,14 @@ Result measure(const Options& options) {
   return result;
 }
 
-int report(const Options& options, const Result& result) {
+void report(const Options& options, const Result& result) {
   fmt::print(
       "Latency between two processes: {} robots at {} Hz, {} bytes each, keyed, best effort\n{}",
       options.load.robots, options.load.rate_hz, result.payload_bytes, table(result));
-  if (options.json_file.empty()) return 0;
+  if (options.json_file.empty()) return;
   std::ofstream file(options.json_file);
   file << json(options, result);
   if (!file.flush()) throw std::runtime_error("cannot write " + options.json_file);
-  return 0;
 }
 
 }  // namespace
@@ -142,17 +141,11 @@ int main(int argc, char** argv) {
   app.add_option("--rate", options.load.rate_hz, "frames a second")->check(CLI::Range(1.0, 1000.0));
   app.add_flag("--send", options.send, "be the sending process (started by the measurement)");
   app.add_option("--domain", options.domain, "DDS domain, with --send");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    if (!options.send) return report(options, measure(options));
-    nadir::bench::send_poses(options.load, options.domain);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "dds_latency: %s\n", error.what());
-    return 1;
-  }
+  return nadir::bench::bench_main(argc, argv, app, [&options] {
+    if (options.send) {
+      nadir::bench::send_poses(options.load, options.domain);
+    } else {
+      report(options, measure(options));
+    }
+  });
 }

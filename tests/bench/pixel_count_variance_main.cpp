@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -14,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "tests/bench/bench_program.h"
 #include "tests/bench/detector_noise.h"
 #include "tests/bench/json_file.h"
 #include "tests/bench/noise_figure.h"
@@ -156,16 +155,5 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100000));
   app.add_option("--counts", options.counts, "numbers of pixels, 8 to 200")
       ->check(CLI::Range(2, 200));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    run(options);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "pixel_count_variance: %s\n", error.what());
-    return 1;
-  }
+  return nadir::bench::bench_main(argc, argv, app, [&options] { run(options); });
 }
