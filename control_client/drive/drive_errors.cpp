@@ -67,7 +67,7 @@ DriveErrors measure_drive(const DriveRecord& record, double from_s) {
 
 std::string error_table(const std::vector<DriveErrors>& drives) {
   std::string table = fmt::format(
-      "{:<16} {:>6} | {:>22} | {:>22} | {:>22} |\n{:<16} {:>6} | {:>7} {:>6} {:>7} | {:>7} {:>6} "
+      "{:<20} {:>6} | {:>22} | {:>22} | {:>22} |\n{:<20} {:>6} | {:>7} {:>6} {:>7} | {:>7} {:>6} "
       "{:>7} | {:>7} {:>6} {:>7} | {:>6}\n",
       "", "", "fused - true", "encoders alone - true", "true - commanded", "drive", "s", "mm rms",
       "max", "deg", "mm rms", "max", "deg", "mm rms", "max", "deg", "missed");
@@ -76,7 +76,7 @@ std::string error_table(const std::vector<DriveErrors>& drives) {
                        1e3 * error.position_max_m, kDegrees * error.heading_rms_rad);
   };
   for (const DriveErrors& each : drives) {
-    table += fmt::format("{:<16} {:6.1f}{}{}{} | {:6.0f}\n", each.name, each.duration_s,
+    table += fmt::format("{:<20} {:6.1f}{}{}{} | {:6.0f}\n", each.name, each.duration_s,
                          cells(each.fused), cells(each.encoders), cells(each.tracking),
                          each.ticks_missed);
   }

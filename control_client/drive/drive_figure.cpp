@@ -38,7 +38,7 @@ path { fill: none; stroke-linejoin: round; stroke-linecap: round; }
 .encoders { stroke: #d1493f; stroke-width: 1.4; }
 .true { stroke: #1668b5; stroke-width: 2.2; }
 .estimate { stroke: #111; stroke-width: 1; stroke-dasharray: 4 3; stroke-linecap: butt; }
-.fused { stroke: #1668b5; stroke-width: 1.2; }
+.fused { stroke: #111; stroke-width: 1; }
 </style>
 )";
 
@@ -51,7 +51,7 @@ Points path_mm(const DriveRecord& drive, fusion::PlanarPose DriveRow::*pose) {
 }
 
 Points distance_mm(const DriveRecord& drive, fusion::PlanarPose DriveRow::*pose) {
-  constexpr double kSmallest_mm = 0.02;  // of the axis: a zero has no logarithm
+  constexpr double kSmallest_mm = 0.05;  // of the axis: a zero has no logarithm
   Points points;
   for (const DriveRow& row : drive.rows) {
     const double distance_m = ((row.*pose).position_m() - row.truth.position_m()).norm();
@@ -110,7 +110,7 @@ std::string legend(double y) {
 }
 
 std::string table(const std::vector<DriveRecord>& drives, double width) {
-  constexpr double kColumns[] = {0.0, 190.0, 330.0, 470.0, 610.0};
+  constexpr double kColumns[] = {0.0, 290.0, 420.0, 550.0, 690.0};
   std::string out;
   const auto row = [&](double y, const std::vector<std::string>& cells, const char* look) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -124,7 +124,7 @@ std::string table(const std::vector<DriveRecord>& drives, double width) {
       "head");
   out += fmt::format(
       "<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\" class=\"rule\"/>\n", kLeft,
-      std::min(kLeft + 615.0, width - 10.0), kTable + 7.0, kTable + 7.0);
+      std::min(kLeft + 695.0, width - 10.0), kTable + 7.0, kTable + 7.0);
   double y = kTable;
   for (const DriveRecord& drive : drives) {
     y += kRow;

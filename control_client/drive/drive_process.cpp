@@ -74,8 +74,10 @@ std::unique_ptr<RobotBase> DriveProcess::make_base(const DriveConfig& config) {
   truths_.emplace(participant_);
   SimulationSettings simulation = config.simulation;
   simulation.start = config.start.value_or(task_.trajectory->at(0.0).pose);
+  // A step earlier than the first period: that finds a first report.
+  const Timestamp start = clock_.at(scheduler_.next()) - fusion::from_seconds(simulation.step_s);
   return std::make_unique<SimulatedBase>(model_, task_.robot_config.control.inner, simulation,
-                                         clock_.at(scheduler_.next()),
+                                         start,
                                          [this](const TruthSample& truth) { publish(truth); });
 }
 
