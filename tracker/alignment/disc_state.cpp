@@ -121,6 +121,44 @@ double DiscState::structure(const CentreEvidence& evidence, const PixelNoise& no
   return 0.5 * (evidence.information.inverse() * scatter).trace();
 }
 
+DiscState::Slope DiscState::light_slope(const PixelNoise& noise) const {
+  constexpr float kNoEdge = 0.005F;
+  constexpr float kWhite = 253.5F;
+  double sum = 0.0;
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+  Eigen::Vector2d squares = Eigen::Vector2d::Zero();
+  Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+  double residual_sum = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    const auto channel = static_cast<std::size_t>(c);
+    const float* const below = base(c);
+    const ChannelLevels& fitted = levels[channel];
+    for (int i = patch.begin[channel]; i < patch.end[channel]; ++i) {
+      const auto p = static_cast<std::size_t>(i);
+      const float share = shares.share[p];
+      if (patch.use[p] == 0.0F || patch.value[channel][p] > kWhite) continue;
+      if (share > kNoEdge && share < 1.0F - kNoEdge) continue;
+      const double model = fitted.level + fitted.contrast * static_cast<double>(share) +
+                           (below != nullptr ? static_cast<double>(below[i]) : 0.0);
+      if (model < 1.0) continue;
+      const double relative = static_cast<double>(patch.value[channel][p]) / model - 1.0;
+      const double weight = model * model / noise.variance(model);
+      const Eigen::Vector2d at(static_cast<double>(patch.du[p]), static_cast<double>(patch.dv[p]));
+      sum += weight;
+      residual_sum += weight * relative;
+      place += weight * at;
+      squares += weight * at.cwiseAbs2();
+      moment += weight * relative * at;
+    }
+  }
+  if (!(sum > 0.0)) return {};
+  place /= sum;
+  squares -= sum * place.cwiseAbs2();
+  if (!(squares.minCoeff() > 0.0)) return {};
+  return {(moment - residual_sum * place).cwiseQuotient(squares),
+          1.0 / std::sqrt(squares.minCoeff())};
+}
+
 void DiscState::follow(const Eigen::Vector2d& step_m) {
   for (std::size_t c = 0; c < 3; ++c) {
     const Normal n = normal_of(sums_[c], levels[c].contrast);

@@ -44,6 +44,13 @@ class DiscState {
   /// residuals tell too little. (A cluster-robust covariance; White, Econometrica 1980.)
   double structure(const CentreEvidence& evidence, const PixelNoise& noise,
                    const OutlierLimits& limits);
+  /// Relative change of the light per pixel that the residuals show, in the disc and beside it but
+  /// not at its edge, and what noise makes of it, one sigma.
+  struct Slope {
+    Eigen::Vector2d per_px = Eigen::Vector2d::Zero();
+    double deviation_per_px = 0.0;
+  };
+  Slope light_slope(const PixelNoise& noise) const;
   /// Levels follow a step of the centre after the last evaluation.
   void follow(const Eigen::Vector2d& step_m);
 

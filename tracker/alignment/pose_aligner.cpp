@@ -12,12 +12,14 @@ namespace {
 
 constexpr int kMostIterations = 10;
 constexpr double kSettled_px = 0.03;  // the step after this one would be smaller than any error
-constexpr double kNear_px = 0.3;      // after a step of this length the next is in the noise
+constexpr double kNear_px = 0.5;      // after a step of this length the next is in the noise
 constexpr double kNoLimit = 1e9;
 constexpr double kSuspicious = 1.15;  // chi-square per degree of freedom
-// Sectors that err much err together: then their shifts add up.
-constexpr double kMuchStructure = 8.0;
-constexpr double kNoShadow = 4.0;          // of structure: such a disc teaches nothing
+// A slope of the light of 1 per pixel shifts a disc by so many radii and blurs; a shadow's edge is
+// no even slope, so twice what a slope would do.
+constexpr double kShadingError = 2.4;
+constexpr double kKnownBlur_px = 0.01;
+constexpr double kNoShadow = 4.0;          // of structure: such a disc teaches little
 constexpr double kStructureOfNoise = 0.8;  // what chance may add to 1
 constexpr double kGatherAgain_px = 0.75;   // pixels were gathered for a place this far away
 constexpr double kFarthest_radii = 1.5;    // from the guess: beyond it another place is found
@@ -75,6 +77,7 @@ struct PoseAligner::State {
   std::array<double, vision::kMaxDiscs>
       inflation{};  // variance of a disc's pixels over their noise
   std::array<double, vision::kMaxDiscs> structure{};
+  std::array<double, vision::kMaxDiscs> shading_m2{};  // variance of a centre by uneven light
   std::array<bool, vision::kMaxDiscs> counts{};
   fusion::PlanarPose pose;
   fusion::PlanarPose gathered_at;
@@ -161,13 +164,17 @@ void PoseAligner::State::evaluate_discs(const PixelNoise& noise) {
 void PoseAligner::State::look_at_structure(const PixelNoise& noise) {
   for (std::size_t i = 0; i < discs.size(); ++i) {
     structure[i] = 1.0;
+    shading_m2[i] = 0.0;
     if (!counts[i]) continue;
     const double chi_square =
         std::max(evidence[i].chi_square_per_dof(Eigen::Vector2d::Zero()), evidence[i].pull_ratio);
     if (chi_square < kSuspicious) continue;
-    const double excess =
-        std::max(0.0, discs[i].structure(evidence[i], noise, limits()) - 1.0 - kStructureOfNoise);
-    structure[i] = 1.0 + excess + excess * excess / kMuchStructure;
+    structure[i] =
+        std::max(1.0, discs[i].structure(evidence[i], noise, limits()) - kStructureOfNoise);
+    const DiscState::Slope slope = discs[i].light_slope(noise);
+    const double certain =
+        std::max(0.0, slope.per_px.norm() - 3.0 * std::sqrt(chi_square) * slope.deviation_per_px);
+    shading_m2[i] = std::pow(kShadingError * robot.radius_m[i] * blur_px * certain, 2);
   }
 }
 
@@ -186,8 +193,11 @@ bool PoseAligner::State::step() {
   for (std::size_t i = 0; i < discs.size(); ++i) {
     if (!counts[i]) continue;
     const Eigen::Matrix<double, 2, 3> a = lever(i);
-    information += a.transpose() * evidence[i].information * a / inflation[i];
-    gradient += a.transpose() * evidence[i].gradient / inflation[i];
+    const Eigen::Matrix2d own_m2 = evidence[i].information.inverse();
+    const Eigen::Matrix2d weight =
+        (own_m2 * inflation[i] + shading_m2[i] * Eigen::Matrix2d::Identity()).inverse();
+    information += a.transpose() * weight * a;
+    gradient += a.transpose() * weight * own_m2 * evidence[i].gradient;
   }
   // Compared in metres: the heading by way of the outermost rim.
   const Eigen::Vector3d scale(1.0, 1.0, 1.0 / robot.reach_m);
@@ -254,7 +264,7 @@ void PoseAligner::State::finish(AlignedPose& result) const {
     const Eigen::Matrix<double, 2, 3> a = lever(i);
     const Eigen::Matrix2d own_m2 = evidence[i].information.inverse();
     const Eigen::Matrix2d covariance_m2 =
-        own_m2 * inflation[i] + floor_m2 * Eigen::Matrix2d::Identity();
+        own_m2 * inflation[i] + (floor_m2 + shading_m2[i]) * Eigen::Matrix2d::Identity();
     information += a.transpose() * covariance_m2.inverse() * a;
     const Eigen::Vector2d off_m = own_m2 * evidence[i].gradient - a * last_step;
     misfit += off_m.dot(covariance_m2.inverse() * off_m);
@@ -292,6 +302,7 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
   s.inflation.fill(1.0);
   s.last_step_px = kNoLimit;
   s.structure.fill(1.0);
+  s.shading_m2.fill(0.0);
   vision::PixelPoint centre_px = guess.centre_px;
   const double farthest_m = kFarthest_radii * s.robot.radius_m[0];
   bool gather_first = true;
@@ -312,12 +323,13 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
     }
     s.evaluate_discs(sensor.noise());
     s.judge_looks(look);
-    if (s.last_step_px < kNear_px) s.look_at_structure(sensor.noise());
+    const bool near = s.last_step_px < kNear_px;
+    if (near) s.look_at_structure(sensor.noise());
     if (std::count(s.counts.begin(), s.counts.begin() + s.robot.disc_count, true) < 2) return false;
     if (!s.step()) return false;
     const Eigen::Vector3d away = fusion::pose_difference(s.pose, guess.pose_world_robot);
     if (away.head<2>().norm() > farthest_m || std::abs(away.z()) > kFarthest_rad) return false;
-    if (s.last_step_px < kSettled_px) break;
+    if (near && s.last_step_px < kSettled_px) break;
   }
   if (result.iterations > kMostIterations) return false;
   s.finish(result);
@@ -352,7 +364,10 @@ void PoseAligner::State::teach_light(LightShape& light, const DiscState& disc,
 void PoseAligner::teach(SensorModel& sensor) {
   State& s = *state_;
   const std::size_t i = s.taught_disc++ % s.discs.size();
-  if (!s.counts[i] || s.structure[i] > kNoShadow) return;
+  if (!s.counts[i]) return;
+  // Uneven light tells nothing of optics, but a blur that is not known yet looks like it.
+  const bool even = s.structure[i] <= kNoShadow && s.shading_m2[i] == 0.0;
+  const bool knows_blur = sensor.blur_deviation_px() < kKnownBlur_px;
   DiscState& disc = s.discs[i];
   const OutlierLimits limits{s.settings.huber_sigmas, s.settings.far_sigmas};
   double score = 0.0;
@@ -375,7 +390,7 @@ void PoseAligner::teach(SensorModel& sensor) {
                          d(scatter.outside_squares) / (d(scatter.outside_count) - 0.5),
                          d(scatter.outside_count));
     }
-    s.teach_light(sensor.light, disc, levels, scatter, sensor.noise());
+    if (even) s.teach_light(sensor.light, disc, levels, scatter, sensor.noise());
     Eigen::Matrix2d aa;
     aa << d(sums.n), d(sums.s), d(sums.s), d(sums.ss);
     if (!(aa.determinant() > 1e-4 * aa(0, 0) * aa(0, 0))) continue;
@@ -385,7 +400,7 @@ void PoseAligner::teach(SensorModel& sensor) {
     score += levels.contrast * (d(scatter.br) - gain.dot(ar));
     information += levels.contrast * levels.contrast * (d(scatter.bb) - gain.dot(ab));
   }
-  sensor.learn_blur(score / s.inflation[i], information / s.inflation[i]);
+  if (even || !knows_blur) sensor.learn_blur(score / s.inflation[i], information / s.inflation[i]);
 }
 
 }  // namespace nadir::tracker
