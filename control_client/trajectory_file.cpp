@@ -208,17 +208,27 @@ TrajectoryPtr choose_trajectory(const std::string& name_or_file, const RobotMode
 
 TrajectoryPtr fitting_trajectory(const std::string& name_or_file, const RobotModel& model,
                                  double speed) {
-  constexpr double kMargin = 0.99;
-  TrajectoryPtr trajectory = time_scaled(find_trajectory(name_or_file), speed);
-  // Speed grows with the factor, voltage at least so: each round falls below the limit or nearly.
-  for (int round = 0; round < 20; ++round) {
-    const TrajectoryDemand demand = trajectory_demand(*trajectory, model);
-    const double most = std::max(demand.speed, demand.voltage);
-    if (most <= 1.0) return trajectory;
-    trajectory = time_scaled(trajectory, kMargin / most);
+  const TrajectoryPtr path = find_trajectory(name_or_file);
+  const auto fits = [&](double factor) {
+    const TrajectoryDemand demand = trajectory_demand(*time_scaled(path, factor), model);
+    return std::max(demand.speed, demand.voltage) <= 1.0;
+  };
+  if (fits(speed)) return time_scaled(path, speed);
+  // Between a factor that fits and twice as much, which does not.
+  constexpr int kHalvings = 20;
+  double slow = 0.5 * speed;
+  for (int i = 0; i < kHalvings && !fits(slow); ++i) slow *= 0.5;
+  if (!fits(slow)) {
+    throw vision::InputError({name_or_file, 0, 0}, "no speed of this trajectory suits the robot",
+                             "see its limits");
   }
-  throw vision::InputError({name_or_file, 0, 0}, "no speed of this trajectory suits the robot",
-                           "see its limits");
+  double fast = 2.0 * slow;
+  constexpr int kBisections = 7;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (slow + fast);
+    (fits(middle) ? slow : fast) = middle;
+  }
+  return time_scaled(path, slow);
 }
 
 }  // namespace nadir::control_client

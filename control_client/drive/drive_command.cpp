@@ -8,6 +8,7 @@
 
 #include "control_client/drive/drive_config.h"
 #include "control_client/drive/drive_process.h"
+#include "control_client/drive/realtime_priority.h"
 #include "control_client/trajectory_file.h"
 #include "tracker/wire/wire_types.h"
 #include "vision/input/input_error.h"
@@ -59,6 +60,8 @@ void run_drive_command(const DriveOptions& options, const std::atomic<bool>& sto
   task.simulates = options.simulates;
   task.log = options.log;
   task.duration_s = options.duration_s;
+  // Before the threads of DDS are started: they inherit it.
+  take_realtime_priority(config.realtime_priority);
   DriveProcess process(config, task,
                        [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   process.run(stop);

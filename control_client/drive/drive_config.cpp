@@ -192,6 +192,7 @@ void everything(Io& io, DriveConfig* config) {
   config->robot = robot;
   io.choice("output", kOutputs, &config->output);
   io.number("command_valid_s", {0.005, 10.0}, &config->command_valid_s);
+  io.integer("realtime_priority", {0.0, 99.0}, &config->realtime_priority);
   io.number("state_interval_s", {0.01, 10.0}, &config->state_interval_s);
   io.section("clock", [&](auto& part) {
     part.number("ask_interval_s", {0.01, 10.0}, &config->clock_ask_interval_s);

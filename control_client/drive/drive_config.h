@@ -21,6 +21,7 @@ struct DriveConfig {
   std::filesystem::path robot;  ///< ROBOT.yaml; empty: omni3
   tracker::WheelCommandKind output = tracker::WheelCommandKind::kVolts;
   double command_valid_s = 0.1;
+  int realtime_priority = 10;         ///< 1 to 99, taken where the system allows it; 0: none
   double state_interval_s = 0.1;      ///< of the client's state on the network
   double clock_ask_interval_s = 0.2;  ///< of the questions about the tracker's clock
   ClockError clock_error;             ///< on purpose

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -56,6 +57,14 @@ DriveErrors measure_drive(const DriveRecord& record, double from_s) {
     encoders.add(row.encoders, row.truth);
     if (row.follows) tracking.add(row.truth, row.command);
   }
+  // The client stops its robot before it ends: that is not counted.
+  const auto last_driven = std::ranges::find_if(record.rows.rbegin(), record.rows.rend(),
+                                                [](const DriveRow& row) { return row.drives; });
+  for (auto row = record.rows.begin(); row < last_driven.base(); ++row) {
+    if (!row->slowed) continue;
+    const auto before = row == record.rows.begin() ? row : std::prev(row);
+    errors.slowed_s += row->time_s - before->time_s;
+  }
   errors.duration_s = record.rows.back().time_s - record.rows.front().time_s;
   errors.fused = fused.error();
   errors.encoders = encoders.error();
@@ -68,17 +77,17 @@ DriveErrors measure_drive(const DriveRecord& record, double from_s) {
 std::string error_table(const std::vector<DriveErrors>& drives) {
   std::string table = fmt::format(
       "{:<20} {:>6} | {:>22} | {:>22} | {:>22} |\n{:<20} {:>6} | {:>7} {:>6} {:>7} | {:>7} {:>6} "
-      "{:>7} | {:>7} {:>6} {:>7} | {:>6}\n",
+      "{:>7} | {:>7} {:>6} {:>7} | {:>6} {:>7}\n",
       "", "", "fused - true", "encoders alone - true", "true - commanded", "drive", "s", "mm rms",
-      "max", "deg", "mm rms", "max", "deg", "mm rms", "max", "deg", "missed");
+      "max", "deg", "mm rms", "max", "deg", "mm rms", "max", "deg", "missed", "slow, s");
   const auto cells = [](const DriveError& error) {
     return fmt::format(" | {:7.2f} {:6.1f} {:7.2f}", 1e3 * error.position_rms_m,
                        1e3 * error.position_max_m, kDegrees * error.heading_rms_rad);
   };
   for (const DriveErrors& each : drives) {
-    table += fmt::format("{:<20} {:6.1f}{}{}{} | {:6.0f}\n", each.name, each.duration_s,
+    table += fmt::format("{:<20} {:6.1f}{}{}{} | {:6.0f} {:7.1f}\n", each.name, each.duration_s,
                          cells(each.fused), cells(each.encoders), cells(each.tracking),
-                         each.ticks_missed);
+                         each.ticks_missed, each.slowed_s);
   }
   return table;
 }
@@ -91,6 +100,7 @@ nlohmann::json error_json(const std::vector<DriveErrors>& drives) {
                    {"fused", json(each.fused)},
                    {"encoders", json(each.encoders)},
                    {"tracking", json(each.tracking)},
+                   {"slowed_s", each.slowed_s},
                    {"ticks", each.ticks},
                    {"ticks_missed", each.ticks_missed}});
   }

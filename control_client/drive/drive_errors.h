@@ -19,9 +19,10 @@ struct DriveError {
 struct DriveErrors {
   std::string name;
   double duration_s = 0.0;
-  DriveError fused;     ///< estimate against truth
-  DriveError encoders;  ///< what encoders alone say against truth
-  DriveError tracking;  ///< truth against the commanded trajectory, while it was followed
+  DriveError fused;       ///< estimate against truth
+  DriveError encoders;    ///< what encoders alone say against truth
+  DriveError tracking;    ///< truth against the commanded trajectory, while it was followed
+  double slowed_s = 0.0;  ///< time of being slowed down or stopped, the end apart
   double ticks = 0.0;
   double ticks_missed = 0.0;
 };

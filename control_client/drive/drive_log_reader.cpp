@@ -28,6 +28,7 @@ DriveRecord read_drive_log(const std::filesystem::path& file) {
     const std::string& mode = table.text(row, 0);
     DriveRow tick;
     tick.drives = mode == "driving" || mode == "slow";
+    tick.slowed = mode == "slow" || mode == "stopped" || mode == "emergency";
     tick.follows = tick.drives && table.text(row, 1) == "follow";
     tick.time_s = number(2);
     tick.command = pose(3);

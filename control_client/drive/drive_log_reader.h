@@ -13,6 +13,7 @@ namespace nadir::control_client {
 struct DriveRow {
   double time_s = 0.0;
   bool drives = false;   ///< the robot was meant to move
+  bool slowed = false;   ///< or stopped: something was not as it should be
   bool follows = false;  ///< on the trajectory itself, not on the way to it
   fusion::PlanarPose command;
   fusion::PlanarPose nominal;

@@ -5,12 +5,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tests/bench/alignment_study.h"
+#include "tests/bench/bench_program.h"
 #include "tests/bench/json_file.h"
 
 namespace {
@@ -92,16 +92,5 @@ int main(int argc, char** argv) {
   app.add_option("--far", options.settings.far_sigmas, "where a pixel's pull fades, sigmas");
   app.add_option("--rim", options.settings.rim_sigmas, "masked beside the rim, blurs");
   app.add_option("--margin", options.settings.margin_sigmas, "looked at outside of an edge, blurs");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    run(options);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "alignment: %s\n", error.what());
-    return 1;
-  }
+  return nadir::bench::bench_main(argc, argv, app, [&] { run(options); });
 }

@@ -105,7 +105,6 @@ class Study {
   tracker::SensorModel sensor_;
   CramerRaoBound bound_;
   double guess_px_;
-  int aligned_count_ = 5; std::uint64_t frame_ = 0;
   AlignmentStudy study_;
   Sums sums_;
 };
@@ -122,7 +121,6 @@ std::vector<vision::RobotPlacement> Study::placements(std::uint64_t number) {
 }
 
 void Study::frame(std::uint64_t number, bool counts) {
-  frame_ = number; aligned_count_ = aligner_.robot().disc_count;
   const std::vector<vision::RobotPlacement> robots = placements(number);
   cv::Mat image;
   renderer_.render_robots(number, robots, image);
@@ -169,13 +167,6 @@ void Study::judge(const vision::RobotPlacement& robot, const tracker::AlignedPos
       aligned.pose_world_robot, {robot.motion.x_m, robot.motion.y_m, robot.motion.heading_rad});
   const Eigen::Vector2d error_px = aligned.centre_px - pixel(robot);
   const double nees = error.dot(aligned.covariance.ldlt().solve(error));
-  if (nees > 20) {
-    fprintf(stderr, "nees %.1f err px %.3f %.3f head %.3f deg sig %.3f px %.3f deg iters %d misfit %.2f infl", nees, error_px.x(), error_px.y(), error.z()*57.3, std::sqrt(aligned.covariance(0,0))/m_per_px(robot), std::sqrt(aligned.covariance(2,2))*57.3, aligned.iterations, aligned.misfit);
-    for (int i = 0; i < aligned_count_; ++i) fprintf(stderr, " %.2f(%.0f,%.0f,%.0f|%.0f,%.0f,%.0f)", aligned.discs[i].chi_square_per_dof, aligned.discs[i].level[0], aligned.discs[i].level[1], aligned.discs[i].level[2], aligned.discs[i].contrast[0], aligned.discs[i].contrast[1], aligned.discs[i].contrast[2]);
-    if (scene_.light.shadow) { vision::ShadowEdge e(vision::shadow_in_frame(*scene_.light.shadow, scene_.camera.width_px, scene_.camera.height_px, kSeed, frame_), 0.0); fprintf(stderr, " edge at %.1f", e.distance_px(aligned.centre_px.x(), aligned.centre_px.y())); 
-    for (auto& p : scene_.layouts.front().outer) { double h=robot.motion.heading_rad; Eigen::Vector2d q(robot.motion.x_m+std::cos(h)*p.position_robot_m.x()-std::sin(h)*p.position_robot_m.y(), robot.motion.y_m+std::sin(h)*p.position_robot_m.x()+std::cos(h)*p.position_robot_m.y()); auto px=renderer_.camera().project({q.x(),q.y(),scene_.layouts.front().height_m}); fprintf(stderr, " %.1f", e.distance_px(px.x(),px.y())); } }
-    fprintf(stderr, "\n");
-  }
   sums_.square_px2 += 0.5 * error_px.squaredNorm();
   sums_.heading2 += error.z() * error.z();
   sums_.error_px += error_px;

@@ -27,6 +27,15 @@ using Seconds = std::chrono::duration<double>;
 
 const std::filesystem::path kData = NADIR_DATA_DIR;
 
+// Many robots share the field: each has a tour of 0.2 m.
+constexpr const char* kTour =
+    "waypoints:\n"
+    "  - {x_m: -0.1, y_m: -0.05}\n"
+    "  - {x_m: 0.1, y_m: -0.05, heading_rad: 1}\n"
+    "  - {x_m: 0.1, y_m: 0.05}\n"
+    "  - {x_m: -0.1, y_m: 0.05, heading_rad: -1}\n"
+    "  - {x_m: -0.1, y_m: -0.05}\n";
+
 /// The live scene, with a blackout so long after the tracker's start if one is asked for.
 std::filesystem::path scene_with(const DriveScenario& scenario,
                                  const vision::ScratchFolder& folder) {
@@ -48,7 +57,10 @@ std::filesystem::path scene_with(const DriveScenario& scenario,
 class Run {
  public:
   explicit Run(const DriveScenario& scenario)
-      : scenario_(scenario), dds_(scenario.packet_loss), scene_(scene_with(scenario, folder_)) {}
+      : scenario_(scenario),
+        dds_(scenario.packet_loss),
+        scene_(scene_with(scenario, folder_)),
+        tour_(folder_.write("tour.yaml", kTour)) {}
 
   DriveResult finish() {
     start_tracker();
@@ -104,7 +116,7 @@ class Run {
                                           "--team",
                                           i < kNumbers ? "blue" : "yellow",
                                           "--trajectory",
-                                          is_few ? kTrajectories[i % 3] : tour(),
+                                          is_few ? kTrajectories[i % 3] : tour_.string(),
                                           "--place=" + place,
                                           "--simulate",
                                           "--seed",
@@ -118,17 +130,6 @@ class Run {
     arguments.insert(arguments.end(), {"--log", logs_.back().string()});
     clients_.push_back(std::make_unique<ChildProcess>(
         std::filesystem::path(NADIR_BIN_DIR) / "nadir-client", arguments, dds_.environment()));
-  }
-
-  // Many robots share the field: each has a tour of 0.2 m.
-  std::string tour() {
-    return folder_
-        .write(
-            "tour.yaml",
-            "waypoints:\n  - {x_m: -0.1, y_m: -0.05}\n  - {x_m: 0.1, y_m: -0.05, heading_rad: 1}\n"
-            "  - {x_m: 0.1, y_m: 0.05}\n  - {x_m: -0.1, y_m: 0.05, heading_rad: -1}\n"
-            "  - {x_m: -0.1, y_m: -0.05}\n")
-        .string();
   }
 
   void measure_costs(double time_s) {
@@ -153,6 +154,7 @@ class Run {
   test::LoopbackDds dds_;
   vision::ScratchFolder folder_;
   std::filesystem::path scene_;
+  std::filesystem::path tour_;
   Clock::time_point tracker_started_;
   std::unique_ptr<ChildProcess> tracker_;
   std::vector<std::unique_ptr<ChildProcess>> clients_;

@@ -25,7 +25,8 @@ DriveRecord record() {
   for (int i = 0; i < 200; ++i) {
     DriveRow row;
     row.time_s = 0.02 * i;
-    row.drives = true;
+    row.drives = i < 190;
+    row.slowed = (i >= 20 && i < 70) || i >= 190;
     row.follows = i >= 100;
     row.command = {0.001 * i, row.follows ? 0.0 : 5.0, 0.0};
     row.truth = {0.001 * i, 0.001, 0.0};
@@ -45,6 +46,7 @@ TEST(DriveErrors, AreRootMeanSquares) {
   EXPECT_NEAR(errors.encoders.heading_rms_rad, M_PI, 1e-12);
   EXPECT_NEAR(errors.tracking.position_rms_m, 0.001, 1e-12) << "on the way does not count";
   EXPECT_NEAR(errors.duration_s, 3.98, 1e-12);
+  EXPECT_NEAR(errors.slowed_s, 1.0, 1e-9) << "the last stop is the end of the drive";
   const auto json = error_json({errors});
   EXPECT_NEAR(json[0]["fused"]["position_rms_m"].get<double>(), 0.005, 1e-12);
   EXPECT_NE(error_table({errors}).find("5.00"), std::string::npos);

@@ -168,6 +168,22 @@ TEST(Trajectories, ArePutSomewhereElse) {
   EXPECT_EQ(moved->duration_s(), circle->duration_s());
 }
 
+TEST(Trajectories, ThatAreTooFastAreSlowedDownUntilTheyFit) {
+  const RobotModel model{RobotParameters{}};
+  EXPECT_EQ(fitting_trajectory("circle", model)->duration_s(),
+            standard_trajectory("circle")->duration_s());
+  const TrajectoryPtr fitted = fitting_trajectory("circle", model, 20.0);
+  const TrajectoryDemand demand = trajectory_demand(*fitted, model);
+  EXPECT_LE(std::max(demand.speed, demand.voltage), 1.0);
+  EXPECT_GT(std::max(demand.speed, demand.voltage), 0.9) << "not slower than needed";
+  const double share = 0.3;
+  EXPECT_LT((fitted->at(share * fitted->duration_s()).pose -
+             standard_trajectory("circle")->at(share * 20.0).pose)
+                .norm(),
+            1e-9)
+      << "the same path";
+}
+
 TEST(Trajectories, TheRestOfOneIsItsEnd) {
   const TrajectoryPtr circle = standard_trajectory("circle");
   const TrajectoryPtr rest = rest_of(circle, 5.0);
