@@ -1,20 +1,30 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calibration/calibration_file.h"
 #include "calibration/pixel_count_variance.h"
+#include "tracker/followed_robots.h"
 #include "tracker/pose_from_markers.h"
 #include "tracker/pose_report.h"
 #include "tracker/robot_tracks.h"
+#include "tracker/tag_robots.h"
 #include "vision/colour_classes.h"
 #include "vision/disc_pattern_detector.h"
 #include "vision/frame.h"
 #include "vision/marker_layout.h"
 
 namespace nadir::tracker {
+
+/// What poses and covariances are made of.
+enum class PoseSource {
+  kAlignment,         ///< pixels aligned with the layout's template; covariance of Fisher
+  kAlignedAndCounts,  ///< the same poses with covariances from the discs' pixel counts
+  kDetector,          ///< discs as the detector measures them, covariances from `variance`
+};
 
 /// Everything that makes poses of one camera's frames.
 struct PipelineSetup {
@@ -26,10 +36,13 @@ struct PipelineSetup {
   /// Of the discs' centres; by default from their own pixels.
   calibration::PixelCountVariance variance = {};
   TrackSettings tracks = {};
+  PoseSource source = PoseSource::kAlignment;
+  std::optional<Mosaic> mosaic = {};  ///< of the sensor; nothing: recognised by the noise
 };
 
-/// The story of a frame: detector (one for each layout), plane map, variance, identity, report.
-/// Knows of other frames only who is who. Not thread-safe: one for each camera.
+/// The story of a frame: align the robots that are followed, search for others (one detector for
+/// each layout), plane map, variance, identity, report. A pose is what its frame says: of other
+/// frames it takes only where to look and who is who. Not thread-safe: one for each camera.
 class CameraPipeline {
  public:
   /// For frames of this size. Throws InputError if it is not the calibration's, if a team's name is
@@ -50,21 +63,29 @@ class CameraPipeline {
     vision::DetectionResult seen;
     int first_kind = 0;  // of the layout's teams, for RobotTracks
   };
-  // A robot in this frame; the observation lives in its eye.
+  // A robot in this frame; the observation lives in its eye or with the robot that is followed.
   struct Sighting {
     std::size_t layout = 0;
     const vision::RobotObservation* observation = nullptr;
     MarkerPose pose;
     bool shares_disc = false;
+    int followed = -1;  // index of the robot that is followed
+    int aligned = -1;   // of a detected robot, index into refined_
   };
 
+  void make_tags(int first_kind);
   void check_size(const vision::Frame& frame) const;
-  void detect(const vision::Frame& frame);
-  void locate(FrameReport& report);
+  void search(const vision::Frame& frame);
+  void locate_followed(FrameReport& report);
+  void locate_detected(const vision::Frame& frame, FrameReport& report);
+  void refine(const vision::Frame& frame, Sighting& sighting);
+  bool take_alignment(const AlignedPose& aligned, const vision::RobotObservation& robot,
+                      std::size_t layout, MarkerPose& pose) const;
   bool measure_discs(const vision::RobotObservation& robot, const calibration::PlaneMap& map,
                      DiscCovariances& covariances_m2) const;
   void settle_shared_discs(FrameReport& report);
   void identify(vision::CaptureTime capture_time, FrameReport& report);
+  void remember(const Sighting& sighting, int id, vision::CaptureTime capture_time);
   void report_rejected(FrameReport& report) const;
   RobotReport robot_report(const Sighting& sighting, int id) const;
 
@@ -76,7 +97,13 @@ class CameraPipeline {
   int height_px_;
   std::vector<calibration::PlaneMap> maps_;  // of each layout
   std::vector<Eye> eyes_;
+  FollowedRobots followed_;
+  std::optional<TagRobots> tags_;  // where a layout has them
+  int tag_kind_ = 0;               // of a layout with tags, for RobotTracks: this and its index
+  int slice_ = 0;                  // of the picture, to be searched next
   RobotTracks tracks_;
+  std::vector<vision::PixelPoint> known_;
+  std::vector<AlignedPose> refined_;
   std::vector<Sighting> sightings_;
   std::vector<TrackCandidate> candidates_;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -57,12 +58,9 @@ Eigen::Vector2d direction(double angle_rad) { return {std::cos(angle_rad), std::
 Overlay::Overlay(calibration::PlaneMap map, const std::vector<vision::MarkerLayout>& layouts)
     : map_(std::move(map)) {
   for (const vision::MarkerLayout& layout : layouts) {
-    double radius_m = layout.centre_radius_m;
-    for (const vision::Disc& disc : layout.outer) {
-      radius_m = std::max(radius_m, disc.position_robot_m.norm() + disc.radius_m);
-    }
     for (const vision::Team& team : layout.teams) {
-      styles_.push_back({team.name, line_colour(team.centre_colour), 1.08 * radius_m});
+      styles_.push_back(
+          {team.name, line_colour(team.centre_colour), 1.08 * layout.extent_m(), layout.tags});
     }
   }
 }
@@ -113,13 +111,7 @@ void Overlay::write(const std::string& text, const cv::Point2d& place, double si
 
 void Overlay::draw_robot(const RobotReport& robot) {
   const TeamStyle& style = style_of(robot.team);
-  std::vector<cv::Point2d> outline;
-  outline.reserve(kOutlinePoints);
-  for (int i = 0; i < kOutlinePoints; ++i) {
-    outline.push_back(
-        on_canvas(robot, style.robot_radius_m * direction(2.0 * kPi * i / kOutlinePoints)));
-  }
-  stroke(outline, style.colour, 2, true);
+  draw_outline(robot, style);
   draw_uncertainty(robot, style);
 
   const double heading_rad = robot.pose_world_robot.heading_rad;
@@ -131,6 +123,31 @@ void Overlay::draw_robot(const RobotReport& robot) {
           on_canvas(robot, tip - wing_m * direction(heading_rad - 0.5))},
          style.colour, 2, false);
   draw_number(robot, style);
+}
+
+void Overlay::draw_outline(const RobotReport& robot, const TeamStyle& style) {
+  std::vector<cv::Point2d> outline;
+  outline.reserve(kOutlinePoints);
+  for (int i = 0; i < kOutlinePoints; ++i) {
+    outline.push_back(
+        on_canvas(robot, style.robot_radius_m * direction(2.0 * kPi * i / kOutlinePoints)));
+  }
+  if (!style.tags) {
+    stroke(outline, style.colour, 2, true);
+    return;
+  }
+  const Eigen::Rotation2Dd world_from_robot(robot.pose_world_robot.heading_rad);
+  for (const vision::MountedTag& tag : style.tags->tags_of(robot.id)) {
+    const Eigen::Rotation2Dd robot_from_tag(tag.mount.heading_robot_rad);
+    const double half_m = 0.5 * style.tags->size_m;
+    outline.clear();
+    for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+      const Eigen::Vector2d corner_m =
+          tag.mount.position_robot_m + robot_from_tag * Eigen::Vector2d(half_m * x, half_m * y);
+      outline.push_back(on_canvas(robot, world_from_robot * corner_m));
+    }
+    stroke(outline, style.colour, 2, true);
+  }
 }
 
 void Overlay::draw_uncertainty(const RobotReport& robot, const TeamStyle& style) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,9 +18,9 @@ namespace nadir::tracker {
 inline constexpr double kOverlaySigmaFactor = 100.0;
 
 /// Draws what the tracker says onto the picture that it was said of: a circle as large as each
-/// robot's markers, an arrow along its heading, its number in its team's colour, the one-sigma
-/// ellipse of its place and fan of its heading (both kOverlaySigmaFactor times too large), rejected
-/// candidates with their reasons, and a legend.
+/// robot's markers or the squares of its tags, an arrow along its heading, its number in its team's
+/// colour, the one-sigma ellipse of its place and fan of its heading (both kOverlaySigmaFactor
+/// times too large), rejected candidates with their reasons, and a legend.
 class Overlay {
  public:
   /// `map` is the calibration that the poses were made with; `layouts` give the teams and their
@@ -35,11 +36,13 @@ class Overlay {
     std::string name;
     cv::Scalar colour;
     double robot_radius_m = 0.0;
+    std::optional<vision::TagLayout> tags;
   };
 
   bool is_on_robot(const FrameReport& report, const vision::PixelPoint& pixel) const;
   const TeamStyle& style_of(std::string_view team) const;
   void draw_robot(const RobotReport& robot);
+  void draw_outline(const RobotReport& robot, const TeamStyle& style);
   void draw_uncertainty(const RobotReport& robot, const TeamStyle& style);
   void draw_number(const RobotReport& robot, const TeamStyle& style);
   void draw_rejections(const FrameReport& report);

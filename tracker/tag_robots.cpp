@@ -16,6 +16,7 @@ constexpr double kSmallestTag_px = 12.0;
 constexpr double kFastest_mps = 4.0;         // where nothing is known of a robot's motion
 constexpr double kAcceleration_mps2 = 10.0;  // with a push: what a prediction may be wrong by
 constexpr double kForgotten_s = 0.25;
+constexpr int kMostMissed = 1;  // frames; later it is a newcomer wherever it is
 constexpr double kMargin_px = 3.0;
 constexpr double kMostMargin_sides = 2.0;  // beyond, the search for newcomers is cheaper
 constexpr double kMostMisshape = 0.12;     // of a side, and 1.5 px more
@@ -54,11 +55,12 @@ TagRobots::TagRobots(std::vector<TagRobotKind> kinds, int width_px, int height_p
 void TagRobots::detect(const vision::Frame& frame) {
   if (frame.capture_time < time_) memories_.clear();  // a recording that starts again
   time_ = frame.capture_time;
-  std::erase_if(memories_,
-                [this](const Memory& robot) { return seconds(time_ - robot.time) > kForgotten_s; });
+  std::erase_if(memories_, [this](const Memory& robot) {
+    return robot.missed > kMostMissed || seconds(time_ - robot.time) > kForgotten_s;
+  });
   expected_.clear();
   for (const Memory& robot : memories_) expect_tags(robot, frame.capture_time);
-  search_.search(frame.image, expected_, {}, lost_one_, seen_);
+  search_.search(frame.image, expected_, {}, false, seen_);
 }
 
 // Where the robot's tags should be now.
@@ -153,7 +155,7 @@ TagRobot TagRobots::robot_of(std::size_t first) {
 }
 
 void TagRobots::remember() {
-  lost_one_ = false;
+  for (Memory& memory : memories_) ++memory.missed;
   for (const TagRobot& robot : robots_) {
     const auto kind = static_cast<std::size_t>(
         std::ranges::find(kinds_, robot.layout_index, &TagRobotKind::layout_index) -
@@ -182,9 +184,8 @@ void TagRobots::remember() {
     memory->pose = now;
     memory->centre_px = robot.pose.centre_px;
     memory->time = time_;
+    memory->missed = 0;
   }
-  lost_one_ =
-      std::ranges::any_of(memories_, [this](const Memory& robot) { return robot.time != time_; });
 }
 
 }  // namespace nadir::tracker

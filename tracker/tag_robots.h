@@ -57,6 +57,7 @@ class TagRobots {
     bool has_velocity = false;
     vision::PixelPoint centre_px = vision::PixelPoint::Zero();
     vision::CaptureTime time{};
+    int missed = 0;  // frames since then
   };
   // A tag of this frame, before robots are made of them.
   struct Sighting {
@@ -82,7 +83,6 @@ class TagRobots {
   std::vector<Sighting> sightings_;
   std::vector<TagPose> fused_;
   std::vector<TagRobot> robots_;
-  bool lost_one_ = false;
 };
 
 }  // namespace nadir::tracker

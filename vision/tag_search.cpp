@@ -49,6 +49,22 @@ double largest_side_px(const std::vector<TagKind>& kinds) {
   return side_px;
 }
 
+// A square that the border cuts may be read all the same, but its corners are wrong then.
+bool is_whole(const TagObservation& tag, const cv::Rect& part) {
+  constexpr double kBorder_px = 4.0;
+  return std::ranges::all_of(tag.corners_px, [&part](const PixelPoint& corner) {
+    return corner.x() >= part.x + kBorder_px && corner.y() >= part.y + kBorder_px &&
+           corner.x() <= part.br().x - 1 - kBorder_px && corner.y() <= part.br().y - 1 - kBorder_px;
+  });
+}
+
+bool holds_one(const cv::Rect& box, const TagSearchResult& result) {
+  return std::ranges::any_of(result.tags, [&box](const TagSighting& tag) {
+    return box.contains(cv::Point(static_cast<int>(std::lround(tag.tag.centre_px.x())),
+                                  static_cast<int>(std::lround(tag.tag.centre_px.y()))));
+  });
+}
+
 }  // namespace
 
 cv::Rect tag_box(const PixelPoint& centre_px, double side_px, double margin_px) {
@@ -72,7 +88,9 @@ void TagSearch::search(const cv::Mat& image, std::span<const ExpectedTag> expect
   result.tags.clear();
   result.rejected.clear();
   for (const ExpectedTag& tag : expected) {
-    look_around(image, tag_box(tag.centre_px, tag.side_px, tag.margin_px), tag.side_px, result);
+    const cv::Rect box = tag_box(tag.centre_px, tag.side_px, tag.margin_px);
+    look_around(image, box, tag.side_px, result);
+    everywhere = everywhere || !holds_one(box, result);
   }
   const bool nobody = expected.empty() && found.empty();
   search_newcomers(image, found, everywhere || nobody, result);
@@ -85,7 +103,14 @@ void TagSearch::look_around(const cv::Mat& image, const cv::Rect& part, double s
   detector_.set_decimation(decimation_for(side_px));
   detector_.set_least_contrast(std::max(least_contrast_, 5));
   detector_.detect_in(image, part, seen_);
-  for (const TagObservation& tag : seen_) judge(tag, result);
+  const cv::Rect inside = part & cv::Rect(0, 0, image.cols, image.rows);
+  for (const TagObservation& tag : seen_) {
+    if (is_whole(tag, inside)) {
+      judge(tag, result);
+    } else if (!is_whole(tag, {0, 0, image.cols, image.rows})) {
+      reject(tag, RejectReason::kOutsideImage, result);
+    }
+  }
 }
 
 void TagSearch::search_newcomers(const cv::Mat& image, std::span<const cv::Rect> found,
@@ -118,6 +143,16 @@ void TagSearch::search_newcomers(const cv::Mat& image, std::span<const cv::Rect>
   if (!known) least_contrast_ = 0;
 }
 
+void TagSearch::reject(const TagObservation& tag, RejectReason reason, TagSearchResult& result) {
+  const double reach_px = 0.5 * std::sqrt(area_px2(tag));
+  const auto told = [&](const RejectedCandidate& other) {
+    return (other.centre_px - tag.centre_px).norm() < reach_px;
+  };
+  if (std::ranges::none_of(result.rejected, told)) {
+    result.rejected.push_back({tag.centre_px, reason});
+  }
+}
+
 // Into the result: as a robot's tag, or with what speaks against it. Parts of the image overlap, so
 // a tag may come twice.
 void TagSearch::judge(const TagObservation& tag, TagSearchResult& result) const {
@@ -140,11 +175,7 @@ void TagSearch::judge(const TagObservation& tag, TagSearchResult& result) const 
     result.tags.push_back({i, tag, side_px, 2.0 * tag.decision_margin});
     return;
   }
-  const auto told = [&](const RejectedCandidate& other) {
-    return (other.centre_px - tag.centre_px).norm() < 0.5 * side_px;
-  };
-  if (std::ranges::any_of(result.rejected, told)) return;
-  result.rejected.push_back({tag.centre_px, reason});
+  reject(tag, reason, result);
 }
 
 void TagSearch::learn_contrast(const TagSearchResult& result) {

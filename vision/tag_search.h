@@ -41,7 +41,8 @@ struct TagSearchResult {
 
 /// Finds the tags of a frame without reading all of it: around the places where they are expected,
 /// and elsewhere where there is contrast at all. A fifth of the frame is looked at for newcomers in
-/// each frame, the whole frame while nobody is followed.
+/// each frame; the whole frame while nobody is followed, and where a tag is not where it is
+/// expected.
 ///
 /// How much contrast counts is learnt from the tags that are seen; before the first one it is a
 /// quarter of the strongest that the frame has. A tag counts if a layout has its number and it is
@@ -65,6 +66,7 @@ class TagSearch {
                    TagSearchResult& result);
   void search_newcomers(const cv::Mat& image, std::span<const cv::Rect> found, bool everywhere,
                         TagSearchResult& result);
+  static void reject(const TagObservation& tag, RejectReason reason, TagSearchResult& result);
   void judge(const TagObservation& tag, TagSearchResult& result) const;
   void learn_contrast(const TagSearchResult& result);
 
