@@ -18,6 +18,19 @@ calibration::PixelCountVariance variance_of(const CameraConfig& config) {
   return {};
 }
 
+PoseSource source_of(VarianceModel variance) {
+  switch (variance) {
+    case VarianceModel::kFisher:
+      return PoseSource::kAlignment;
+    case VarianceModel::kPixels:
+      return PoseSource::kDetector;
+    case VarianceModel::kLaw:
+    case VarianceModel::kTable:
+      break;
+  }
+  return PoseSource::kAlignedAndCounts;
+}
+
 void check_teams(const vision::MarkerLayout& layout, const std::filesystem::path& file) {
   for (const vision::Team& team : layout.teams) {
     if (team.name.size() <= kMaxTeamLength) continue;
@@ -56,7 +69,9 @@ PipelineSetup load_pipeline_setup(const CameraConfig& config, const TrackSetting
                       .layouts = {},
                       .colours = vision::default_colour_classes(),
                       .variance = variance_of(config),
-                      .tracks = tracks};
+                      .tracks = tracks,
+                      .source = source_of(config.variance),
+                      .mosaic = config.mosaic};
   for (const std::filesystem::path& file : config.layouts) {
     setup.layouts.push_back(vision::load_marker_layout(file));
     check_teams(setup.layouts.back(), file);

@@ -34,6 +34,7 @@ struct Typed {
   std::optional<std::string> colours;
   std::optional<std::string> noise;
   std::optional<std::string> variance;
+  std::optional<std::string> mosaic;
   std::optional<std::string> poses;
   std::optional<std::string> overlay;
   std::optional<int> domain;
@@ -64,10 +65,15 @@ void add_camera_options(CLI::App& app, Typed& typed) {
   app.add_option("--noise", typed.noise, "variance against pixel count; implies --variance table")
       ->type_name("NOISE.yaml");
   app.add_option("--variance", typed.variance,
-                 "variance of markers: pixels (of each disc's own, default), law (1 / pixel count) "
-                 "or table (--noise)")
+                 "where covariances come from: fisher (of the aligned pixels, default), law "
+                 "(1 / pixel count), table (--noise), or pixels (of each disc's own, no alignment)")
       ->type_name("MODEL")
       ->check(CLI::IsMember(kVarianceNames));
+  app.add_option("--mosaic", typed.mosaic,
+                 "colours of the sensor's top-left 2x2 pixels, whose values alone are aligned "
+                 "(default: auto, by the noise)")
+      ->type_name("none|rggb|bggr|grbg|gbrg|auto")
+      ->check(CLI::IsMember(kMosaicNames));
 }
 
 void add_run_options(CLI::App& app, Typed& typed) {
@@ -124,6 +130,7 @@ void apply_to_camera(const Typed& typed, CameraConfig& camera) {
   if (!typed.layouts.empty()) camera.layouts.assign(typed.layouts.begin(), typed.layouts.end());
   if (typed.rate_hz) camera.rate_hz = *typed.rate_hz;
   if (typed.colours) camera.colours = *typed.colours;
+  if (typed.mosaic) camera.mosaic = mosaic_from_name(*typed.mosaic);
   // A variance without a file takes the configuration's file away, a file without a variance is a
   // table.
   if (typed.variance || typed.noise) {

@@ -13,7 +13,7 @@
 namespace nadir::tracker {
 
 const std::vector<std::string> kPaceNames = {"recorded", "fastest"};
-const std::vector<std::string> kVarianceNames = {"pixels", "law", "table"};
+const std::vector<std::string> kVarianceNames = {"fisher", "pixels", "law", "table"};
 
 Pace pace_from_name(const std::string& name) {
   return static_cast<Pace>(std::ranges::find(kPaceNames, name) - kPaceNames.begin());
@@ -73,8 +73,9 @@ CameraConfig read_camera(const YamlMap& map, const fs::path& folder, std::size_t
   camera.rate_hz = map.number_or("rate_hz", camera.rate_hz, kRate_hz);
   camera.colours = resolve(folder, map.text_or("colours", ""));
   camera.noise = resolve(folder, map.text_or("noise", ""));
-  const std::string& by_file = kVarianceNames[camera.noise.empty() ? 0 : 2];
+  const std::string& by_file = kVarianceNames[camera.noise.empty() ? 0 : 3];
   camera.variance = variance_from_name(map.choice_or("variance", by_file, kVarianceNames));
+  camera.mosaic = mosaic_from_name(map.choice_or("mosaic", kMosaicNames.back(), kMosaicNames));
   camera.landmarks = read_landmarks(map, camera.name);
   map.finish();
   return camera;
@@ -109,6 +110,7 @@ void put_camera(std::string& yaml, const CameraConfig& camera) {
   fmt::format_to(out, "    rate_hz: {}\n    colours: {}\n    noise: {}\n    variance: {}\n",
                  camera.rate_hz, quoted(camera.colours.string()), quoted(camera.noise.string()),
                  kVarianceNames[static_cast<std::size_t>(camera.variance)]);
+  fmt::format_to(out, "    mosaic: {}\n", mosaic_name(camera.mosaic));
   if (!camera.landmarks.empty()) yaml += "    landmarks:\n";
   for (const Landmark& landmark : camera.landmarks) {
     const std::string id = landmark.id < 0 ? "" : fmt::format("id: {}, ", landmark.id);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tracker/alignment/mosaic.h"
 #include "tracker/landmark_monitor.h"
 #include "tracker/robot_tracks.h"
 
@@ -17,9 +18,11 @@ enum class Pace {
 };
 extern const std::vector<std::string> kPaceNames;  ///< in the order of Pace
 
-/// Which errors the centres of markers are taken to have (calibration/pixel_count_variance.h).
+/// Where covariances come from; the last three are those of the markers' centres
+/// (calibration/pixel_count_variance.h).
 enum class VarianceModel {
-  kPixels,  ///< as the detector finds it in the scatter of each disc's pixels
+  kFisher,  ///< the Fisher information of the pixels with which a pose was aligned
+  kPixels,  ///< no alignment: as the detector finds it in the scatter of each disc's pixels
   kLaw,     ///< variance proportional to 1 / pixel count, with the constant of the papers
   kTable,   ///< as the file `noise` says, from the pixel count
 };
@@ -38,7 +41,8 @@ struct CameraConfig {
   double rate_hz = 30.0;          ///< of recordings that bring no capture times
   std::filesystem::path colours;  ///< empty: the default colours
   std::filesystem::path noise;  ///< variance against pixel count; goes with kTable and only with it
-  VarianceModel variance = VarianceModel::kPixels;
+  VarianceModel variance = VarianceModel::kFisher;
+  std::optional<Mosaic> mosaic;     ///< of the sensor's colours; nothing: recognised by the noise
   std::vector<Landmark> landmarks;  ///< that stand where they were surveyed; may be empty
 };
 
