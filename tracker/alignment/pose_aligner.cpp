@@ -26,6 +26,7 @@ constexpr double kFarthest_radii = 1.5;    // from the guess: beyond it another 
 constexpr double kFarthest_rad = 0.6;
 constexpr double kReach_sigmas = 4.0;     // so far reach the edges of two neighbours together
 constexpr double kMisfitPrior_dof = 4.0;  // few discs' misfit is mostly chance
+constexpr int kMostCovered = 1;           // discs; a second one, and it is not certain who it is
 constexpr double kLeastInside = 12.0;     // pixels, to see a slope of light
 constexpr double kLeastLevel = 30.0;      // grey levels: darker, and noise is all there is
 constexpr double kLeastPixels = 12.0;     // values that count, else a disc is out of the image
@@ -62,7 +63,7 @@ struct PoseAligner::State {
   OutlierLimits limits() const {
     return {settings.huber_sigmas, last_step_px < kNear_px ? settings.far_sigmas : kNoLimit};
   }
-  void judge_looks(const ExpectedLook* look);
+  int judge_looks(const ExpectedLook* look);
   bool step();
   Eigen::Matrix<double, 2, 3> lever(std::size_t i) const;
   void finish(AlignedPose& result) const;
@@ -221,9 +222,10 @@ bool PoseAligner::State::step() {
 }
 
 // A disc that does not have the colour that was there before is covered, or is no disc at all.
-// Chi-square does not see it, since the levels are free.
-void PoseAligner::State::judge_looks(const ExpectedLook* look) {
-  if (look == nullptr) return;
+// Chi-square does not see it, since the levels are free. Returns how many there are.
+int PoseAligner::State::judge_looks(const ExpectedLook* look) {
+  if (look == nullptr) return 0;
+  const auto before = std::count(counts.begin(), counts.end(), true);
   std::array<double, vision::kMaxDiscs> amplitudes{};
   std::array<double, vision::kMaxDiscs> sorted{};  // falling
   std::size_t count = 0;
@@ -243,12 +245,13 @@ void PoseAligner::State::judge_looks(const ExpectedLook* look) {
       sorted[place] = sorted[place - 1];
     sorted[place] = amplitudes[i];
   }
-  if (count == 0) return;
+  if (count == 0) return static_cast<int>(before);
   // With an even number the larger one of the two in the middle: a faded pair is no measure.
   const double median = sorted[(count - 1) / 2];
   for (std::size_t i = 0; i < discs.size(); ++i) {
     if (counts[i] && amplitudes[i] < settings.least_amplitude * median) counts[i] = false;
   }
+  return static_cast<int>(before - std::count(counts.begin(), counts.end(), true));
 }
 
 void PoseAligner::State::finish(AlignedPose& result) const {
@@ -306,6 +309,7 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
   vision::PixelPoint centre_px = guess.centre_px;
   const double farthest_m = kFarthest_radii * s.robot.radius_m[0];
   bool gather_first = true;
+  int covered = 0;
   for (result.iterations = 1; result.iterations <= kMostIterations; ++result.iterations) {
     const Eigen::Vector3d moved = fusion::pose_difference(s.pose, s.gathered_at);
     const double moved_px =
@@ -320,9 +324,11 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
         if (s.counts[i]) s.discs[i].start(s.edge(i), s.disc_centre_m(i));
       }
       gather_first = false;
+      covered = 0;
     }
     s.evaluate_discs(sensor.noise());
-    s.judge_looks(look);
+    covered += s.judge_looks(look);
+    if (covered > kMostCovered) return false;
     const bool near = s.last_step_px < kNear_px;
     if (near) s.look_at_structure(sensor.noise());
     if (std::count(s.counts.begin(), s.counts.begin() + s.robot.disc_count, true) < 2) return false;
