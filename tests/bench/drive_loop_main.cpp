@@ -39,7 +39,8 @@ std::vector<DriveScenario> scenarios(const Options& options) {
           {.name = "20 % of packets lost", .duration_s = s, .packet_loss = 0.2},
           {.name = "tracker killed", .duration_s = s, .kills_tracker = true},
           {.name = "blackout of 1 s", .duration_s = s, .blackout_s = 1.0},
-          {.name = "20 robots", .robots = 20, .duration_s = 0.5 * s}};
+          {.name = "20 robots", .robots = 20, .duration_s = 0.5 * s},
+          {.name = "32 robots", .robots = 32, .duration_s = 0.5 * s}};
 }
 
 void print(const DriveResult& result) {

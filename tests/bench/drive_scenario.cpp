@@ -108,7 +108,7 @@ class Run {
     const bool is_few = scenario_.robots <= 3;
     const std::string place =
         is_few ? fmt::format("{},{},0", -0.75 + 0.75 * i, i == 1 ? -0.35 : 0.35)
-               : fmt::format("{},{},0", -1.0 + 0.5 * (i % 5), -0.6 + 0.4 * (i / 5));
+               : fmt::format("{},{},0", -1.05 + 0.3 * (i % 8), -0.66 + 0.44 * (i / 8));
     logs_.push_back(folder_.path() / fmt::format("{}.csv", kTrajectories[i % 3]));
     std::vector<std::string> arguments = {"drive",
                                           "--robot",
