@@ -30,8 +30,8 @@ PixelBox common_box(const Calibration& a, const Calibration& b, const std::strin
                                  b.image_height_px, first, a.image_width_px, a.image_height_px),
                      "compare calibrations of one camera");
   }
-  const PixelBox box{a.points_box.low_px.cwiseMax(b.points_box.low_px),
-                     a.points_box.high_px.cwiseMin(b.points_box.high_px)};
+  PixelBox box{a.points_box.low_px.cwiseMax(b.points_box.low_px),
+               a.points_box.high_px.cwiseMin(b.points_box.high_px)};
   if (!((box.high_px - box.low_px).minCoeff() > 0.0)) {
     throw InputError({second}, "has its points in another part of the image than " + first,
                      "compare calibrations whose points overlap");
