@@ -143,6 +143,35 @@ TEST(Drive, EmergencyStopsAndTheirReleaseComeFromOtherProcesses) {
   EXPECT_EQ(drive.wait(kPatience), 0) << drive.err();
 }
 
+TEST(Drive, AClientThatComesLaterHearsOfAStopToo) {
+  const DriveLoop loop;
+  ChildProcess stop = loop.client("stop", {});
+  ASSERT_TRUE(stop.wait_for_err("stopped all robots", kPatience)) << stop.err();
+  ChildProcess drive = loop.drive("circle", 60.0);
+  EXPECT_TRUE(drive.wait_for_err("emergency (emergency stop)", kPatience)) << drive.err();
+  drive.signal(SIGTERM);
+  EXPECT_EQ(drive.wait(kPatience), 0) << drive.err();
+  stop.signal(SIGTERM);
+  EXPECT_EQ(stop.wait(kPatience), 0) << stop.err();
+}
+
+TEST(Drive, EndsWhenTheTrajectoryIsOver) {
+  const DriveLoop loop;
+  const ChildProcess tracker = loop.tracker();
+  const auto tour = loop.folder().write("tour.yaml",
+                                        "waypoints:\n  - {x_m: 0.3, y_m: 0.2}\n"
+                                        "  - {x_m: 0.5, y_m: 0.1, heading_rad: 0.5}\n");
+  ChildProcess drive =
+      loop.client("drive", {"--robot", "3", "--trajectory", tour.string(), "--simulate", "--start",
+                            "0.3,0.3,20", "--log", loop.log().string()});
+  ASSERT_EQ(drive.wait(kPatience), 0) << drive.err() << tracker.err();
+  EXPECT_NE(drive.err().find("finished (trajectory over)"), std::string::npos) << drive.err();
+  const fusion::PlanarPose end = loop.record().rows.back().truth;
+  EXPECT_NEAR(end.x_m, 0.5, 0.03);
+  EXPECT_NEAR(end.y_m, 0.1, 0.03);
+  EXPECT_NEAR(end.heading_rad, 0.5, 0.15);
+}
+
 /// A robot base on the network: the simulated one, in a thread of this process, with a clock that
 /// is an hour off.
 class NetworkBase {
