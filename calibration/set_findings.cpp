@@ -146,6 +146,7 @@ std::optional<Finding> uncovered(const ConvexHull& hull, int width_px, int heigh
   const double part = static_cast<double>(count) / (kImageCells * kImageCells);
   if (part <= kMostUncoveredShare) return std::nullopt;
   std::vector<std::string> names;
+  names.reserve(empty.size());
   for (const auto& [name, cells] : empty) names.push_back(name);
   return Finding{Grade::kWarn,
                  "uncovered",
