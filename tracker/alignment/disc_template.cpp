@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kBeyondMarks_m = 0.005;
 constexpr double kBeforeMarks_m = 0.010;
+constexpr double kKept = 0.4;  // of a disc's radius beyond its centre
 
 }  // namespace
 
@@ -20,6 +21,8 @@ DiscTemplate template_of(const vision::MarkerLayout& layout) {
     result.place_m[index] = disc.position_robot_m;
     result.radius_m[index] = disc.radius_m;
     result.reach_m = std::max(result.reach_m, disc.position_robot_m.norm() + disc.radius_m);
+    result.least_plate_m =
+        std::max(result.least_plate_m, disc.position_robot_m.norm() + kKept * disc.radius_m);
     foremost_m = std::max(foremost_m, disc.position_robot_m.x() + disc.radius_m);
   }
   result.plate = {result.reach_m + kBeyondMarks_m, foremost_m + kBeforeMarks_m};

@@ -17,7 +17,8 @@ struct DiscTemplate {
   /// At least so far reaches the plate on which the marks lie: a little beyond them. Nothing is
   /// said of it in layouts; the league's robots just have that much.
   PlateShape plate;
-  double reach_m = 0.0;  ///< from the origin to the rim of the outermost disc
+  double least_plate_m = 0.0;  ///< radius of a circle about the origin that holds most of each disc
+  double reach_m = 0.0;        ///< from the origin to the rim of the outermost disc
 };
 
 DiscTemplate template_of(const vision::MarkerLayout& layout);

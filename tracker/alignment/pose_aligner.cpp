@@ -22,7 +22,8 @@ constexpr double kKnownBlur_px = 0.01;
 constexpr double kNoShadow = 4.0;          // of structure: such a disc teaches little
 constexpr double kStructureOfNoise = 0.8;  // what chance may add to 1
 constexpr double kGatherAgain_px = 0.75;   // pixels were gathered for a place this far away
-constexpr double kFarthest_radii = 1.5;    // from the guess: beyond it another place is found
+constexpr double kLongestStep_radii = 0.5;
+constexpr double kFarthest_radii = 1.5;  // from the guess: beyond it another place is found
 constexpr double kFarthest_rad = 0.6;
 constexpr double kReach_sigmas = 4.0;     // so far reach the edges of two neighbours together
 constexpr double kMisfitPrior_dof = 4.0;  // few discs' misfit is mostly chance
@@ -65,6 +66,7 @@ struct PoseAligner::State {
   }
   int judge_looks(const ExpectedLook* look);
   bool step();
+  void shorten_step();
   Eigen::Matrix<double, 2, 3> lever(std::size_t i) const;
   void finish(AlignedPose& result) const;
   void teach_light(LightShape& light, const DiscState& disc, const ChannelLevels& levels,
@@ -105,7 +107,9 @@ bool PoseAligner::State::gather_discs(const cv::Mat& image, Mosaic mosaic, const
     near[static_cast<std::size_t>(near_count++)] = {obstacle.place_m, obstacle.radius_m + rim_m};
   }
   const Turn turn(pose.heading_rad);
-  const PlateShape plate{robot.plate.radius_m - rim_m, robot.plate.front_m - rim_m};
+  // Of a far robot's outermost discs half at least must stay, though the rim's blur reaches them.
+  const double own_rim_m = std::min(rim_m, robot.plate.radius_m - robot.least_plate_m);
+  const PlateShape plate{robot.plate.radius_m - own_rim_m, robot.plate.front_m - own_rim_m};
   bool any = false;
   for (std::size_t i = 0; i < discs.size(); ++i) {
     const Eigen::Vector2d centre_m = disc_centre_m(i);
@@ -187,6 +191,17 @@ Eigen::Matrix<double, 2, 3> PoseAligner::State::lever(std::size_t i) const {
   return a;
 }
 
+// Beyond half a radius a disc's linear model means nothing.
+void PoseAligner::State::shorten_step() {
+  double share = 1.0;
+  for (std::size_t i = 0; i < discs.size(); ++i) {
+    if (!counts[i]) continue;
+    const double moved_m = (lever(i) * last_step).norm();
+    share = std::min(share, kLongestStep_radii * robot.radius_m[i] / std::max(moved_m, 1e-12));
+  }
+  last_step *= share;
+}
+
 // One step of the pose, and the levels with it. False if the discs do not determine a pose.
 bool PoseAligner::State::step() {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -205,6 +220,7 @@ bool PoseAligner::State::step() {
   const Eigen::Matrix3d scaled = scale.asDiagonal() * information * scale.asDiagonal();
   if (!(scaled.determinant() > 1e-9 * std::pow(scaled.trace() / 3.0, 3.0))) return false;
   last_step = information.inverse() * gradient;
+  shorten_step();
   double longest_m = 0.0;
   for (std::size_t i = 0; i < discs.size(); ++i) {
     if (!counts[i]) continue;
