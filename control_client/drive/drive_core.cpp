@@ -49,9 +49,9 @@ void DriveCore::add_odometry(const OdometryInterval& odometry) {
     measured_rates_ =
         (measured_for_s_ * measured_rates_ + length_s * odometry.mean_rates.vector()) / sum_s;
     measured_for_s_ = sum_s;
-  }
-  if (encoder_pose_) {
-    encoder_pose_ = fusion::moved(*encoder_pose_, odometry.mean_rates, length_s);
+    if (encoder_pose_) {
+      encoder_pose_ = fusion::moved(*encoder_pose_, odometry.mean_rates, length_s);
+    }
   }
   if (const auto before = merger_.add(odometry)) give_odometry(*before);
 }
