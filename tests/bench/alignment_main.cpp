@@ -5,12 +5,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tests/bench/alignment_study.h"
 #include "tests/bench/bench_program.h"
+#include "tests/bench/cold_search.h"
 #include "tests/bench/json_file.h"
 
 namespace {
@@ -23,6 +25,7 @@ struct Options {
   std::string only;
   int frames = 200;
   double guess_px = 0.3;
+  bool speed = false;
   nadir::tracker::AlignmentSettings settings;
 };
 
@@ -62,7 +65,50 @@ nlohmann::json json(const AlignmentCase& which, const AlignmentStudy& s) {
           {"robot_us", s.microseconds}};
 }
 
+// Robots that stand, so that they are followed: frame to poses, newcomers' slice of search
+// included.
+std::vector<nadir::bench::SearchCase> speed_cases() {
+  const std::filesystem::path folder = std::filesystem::path(NADIR_DATA_DIR) / "scenes";
+  const auto standing = [&](const std::string& name) {
+    nadir::vision::Scene scene = nadir::vision::load_scene(folder / (name + ".yaml"));
+    for (nadir::vision::RandomRobots& robots : scene.random_robots) {
+      robots.redraw_every_frame = false;
+    }
+    return scene;
+  };
+  constexpr auto kSource = nadir::tracker::PoseSource::kAlignment;
+  const nadir::vision::Scene league = standing("league_even");
+  nadir::vision::Scene hundred = standing("pair_even");
+  hundred.camera = league.camera;
+  hundred.random_robots.front().count = 100;
+  return {{"12 league", league, kSource},
+          {"12 league x2", nadir::bench::enlarged(league, 2), kSource},
+          {"100 pairs", hundred, kSource}};
+}
+
+nlohmann::json run_speed() {
+  fmt::print("{:<14} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "followed", "image", "read_us", "nadir_us",
+             "/ reading", "robots");
+  nlohmann::json cases = nlohmann::json::array();
+  for (const nadir::bench::SearchCase& which : speed_cases()) {
+    const nadir::bench::SearchCosts costs = nadir::bench::measure_cold_search(which, 100);
+    fmt::print("{:<14} {:>4}x{:<4} {:>9.0f} {:>9.0f} {:>9.2f} {:>4.1f}/{}\n", costs.name,
+               costs.width_px, costs.height_px, costs.reading_us(), costs.nadir.median_us,
+               costs.nadir_per_reading(), costs.nadir_robots, costs.robots);
+    cases.push_back({{"case", costs.name},
+                     {"reading_us", costs.reading_us()},
+                     {"nadir_us", costs.nadir.median_us},
+                     {"robots", costs.nadir_robots}});
+  }
+  return cases;
+}
+
 void run(const Options& options) {
+  if (options.speed) {
+    nadir::bench::write_json_file({{"benchmark", "alignment speed"}, {"cases", run_speed()}},
+                                  options.json_file);
+    return;
+  }
   print_header();
   nlohmann::json cases = nlohmann::json::array();
   for (const AlignmentCase& which : nadir::bench::alignment_cases()) {
@@ -86,6 +132,7 @@ int main(int argc, char** argv) {
   app.add_option("--json", options.json_file, "write the figures to this file too");
   app.add_option("--case", options.only, "only cases whose name has this in it");
   app.add_option("--frames", options.frames, "of each case")->check(CLI::Range(1, 1000000));
+  app.add_flag("--speed", options.speed, "what following costs, instead");
   app.add_option("--guess", options.guess_px, "RMS distance of the guesses from the truth, px");
   app.add_option("--floor", options.settings.floor_px, "error of a disc that nothing tells of, px");
   app.add_option("--huber", options.settings.huber_sigmas, "limit of Huber's weights, sigmas");

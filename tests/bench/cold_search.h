@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tracker/camera_pipeline.h"
 #include "vision/synthetic/scene.h"
 
 namespace nadir::bench {
@@ -14,7 +15,8 @@ namespace nadir::bench {
 
 struct SearchCase {
   std::string name;
-  vision::Scene scene;  ///< robots at new places in every frame
+  vision::Scene scene;  ///< robots at new places in every frame; or standing, to be followed
+  tracker::PoseSource source = tracker::PoseSource::kDetector;
 };
 
 /// CPU time of one variant, microseconds.
