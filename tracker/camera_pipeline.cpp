@@ -104,7 +104,10 @@ void CameraPipeline::make_tags(int first_kind) {
   for (std::size_t i = eyes_.size(); i < setup_.layouts.size(); ++i) {
     kinds.push_back({*setup_.layouts[i].tags, maps_[i], i});
   }
-  if (!kinds.empty()) tags_.emplace(std::move(kinds), width_px_, height_px_);
+  if (!kinds.empty()) {
+    tags_.emplace(std::move(kinds), width_px_, height_px_,
+                  TagSettings{setup_.source != PoseSource::kDetector, setup_.mosaic});
+  }
 }
 
 void CameraPipeline::process(const vision::Frame& frame, double read_us, FrameReport& report) {

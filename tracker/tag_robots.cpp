@@ -20,12 +20,21 @@ constexpr int kMostMissed = 1;  // frames; later it is a newcomer wherever it is
 constexpr double kMargin_px = 3.0;
 constexpr double kMostMargin_sides = 2.0;  // beyond, the search for newcomers is cheaper
 constexpr double kMostMisshape = 0.12;     // of a side, and 1.5 px more
-constexpr double kFullMargin = 0.15;  // of the contrast: a decision margin that leaves no doubt
+constexpr double kFullMargin = 38.0;       // grey levels; a decision margin that leaves no doubt
+constexpr unsigned kFramesPerMosaicCheck = 64;
 // Two tags tell of one robot: they agree to this share of a side, and to this angle, rad.
 constexpr double kAgreement_sides = 0.1;
 
 double seconds(vision::CaptureTime::duration duration) {
   return std::chrono::duration<double>(duration).count();
+}
+
+fusion::PlanarPose mounted_pose(const fusion::PlanarPose& robot, const vision::TagMount& mount) {
+  const double c = std::cos(robot.heading_rad);
+  const double s = std::sin(robot.heading_rad);
+  const Eigen::Vector2d& arm = mount.position_robot_m;
+  return {robot.x_m + c * arm.x() - s * arm.y(), robot.y_m + s * arm.x() + c * arm.y(),
+          fusion::wrap_angle(robot.heading_rad + mount.heading_robot_rad)};
 }
 
 std::vector<vision::TagKind> search_kinds(const std::vector<TagRobotKind>& kinds, int width_px,
@@ -49,8 +58,26 @@ std::vector<vision::TagKind> search_kinds(const std::vector<TagRobotKind>& kinds
 
 }  // namespace
 
-TagRobots::TagRobots(std::vector<TagRobotKind> kinds, int width_px, int height_px)
-    : kinds_(std::move(kinds)), search_(search_kinds(kinds_, width_px, height_px)) {}
+TagRobots::TagRobots(std::vector<TagRobotKind> kinds, int width_px, int height_px,
+                     const TagSettings& settings)
+    : kinds_(std::move(kinds)),
+      settings_(settings),
+      search_(search_kinds(kinds_, width_px, height_px)),
+      sensor_(width_px, height_px) {
+  for (const TagRobotKind& kind : kinds_) {
+    grids_.push_back(std::make_unique<PlaneGrid>(kind.map, width_px, height_px));
+    aligners_.emplace_back(kind.layout, *grids_.back());
+  }
+}
+
+void TagRobots::look_for_mosaic(const cv::Mat& image) {
+  if (settings_.mosaic) {
+    mosaic_ = *settings_.mosaic;
+  } else if (frames_ % kFramesPerMosaicCheck == 0) {
+    mosaic_ = recognise_mosaic(image);
+  }
+  ++frames_;
+}
 
 void TagRobots::detect(const vision::Frame& frame) {
   if (frame.capture_time < time_) memories_.clear();  // a recording that starts again
@@ -58,36 +85,99 @@ void TagRobots::detect(const vision::Frame& frame) {
   std::erase_if(memories_, [this](const Memory& robot) {
     return robot.missed > kMostMissed || seconds(time_ - robot.time) > kForgotten_s;
   });
+  if (settings_.aligned) look_for_mosaic(frame.image);
+  sightings_.clear();
   expected_.clear();
-  for (const Memory& robot : memories_) expect_tags(robot, frame.capture_time);
-  search_.search(frame.image, expected_, {}, false, seen_);
+  found_.clear();
+  misshapen_.clear();
+  for (const Memory& robot : memories_) expect(frame, robot);
+  search_.search(frame.image, expected_, found_, false, seen_);
+  for (const vision::TagSighting& seen : seen_.tags) take(frame.image, seen);
 }
 
-// Where the robot's tags should be now.
-void TagRobots::expect_tags(const Memory& robot, vision::CaptureTime time) {
+// Where the robot's tags should be now: aligned there, or a place to search.
+void TagRobots::expect(const vision::Frame& frame, const Memory& robot) {
   const TagRobotKind& kind = kinds_[robot.kind];
-  const double ahead_s = seconds(time - robot.time);
+  const double ahead_s = seconds(time_ - robot.time);
   const Eigen::Vector3d move = robot.velocity * ahead_s;
-  const Eigen::Vector2d place_m = robot.pose.position_m() + move.head<2>();
-  const double heading_rad = robot.pose.heading_rad + move.z();
-  const Eigen::Matrix2d px_per_m = kind.map.jacobian_m_per_px(robot.centre_px).inverse();
-  const double scale = std::sqrt(std::abs(px_per_m.determinant()));
+  const fusion::PlanarPose pose{robot.pose.x_m + move.x(), robot.pose.y_m + move.y(),
+                                fusion::wrap_angle(robot.pose.heading_rad + move.z())};
+  const double scale = 1.0 / grids_[robot.kind]->metres_per_pixel(robot.centre_px);
   const double side_px = kind.layout.size_m * scale;
   const double unknown_m =
       robot.has_velocity ? kAcceleration_mps2 * ahead_s * ahead_s : kFastest_mps * ahead_s;
   const double margin_px = kMargin_px + std::min(scale * unknown_m, kMostMargin_sides * side_px);
   for (const vision::MountedTag& tag : kind.layout.tags_of(robot.id)) {
-    const double c = std::cos(heading_rad);
-    const double s = std::sin(heading_rad);
-    const Eigen::Vector2d& arm = tag.mount.position_robot_m;
-    const Eigen::Vector2d tag_m =
-        place_m + Eigen::Vector2d(c * arm.x() - s * arm.y(), s * arm.x() + c * arm.y());
-    expected_.push_back({pixel_near(kind.map, tag_m, robot.centre_px), side_px, margin_px});
+    Sighting sighting{.kind = robot.kind, .robot_id = robot.id, .tag_id = tag.tag_id, .pose = {}};
+    sighting.pose.mount = tag.mount;
+    sighting.pose.pose_world_tag = mounted_pose(pose, tag.mount);
+    sighting.pose.centre_px =
+        pixel_near(kind.map, sighting.pose.pose_world_tag.position_m(), robot.centre_px);
+    const bool may_align = settings_.aligned && robot.has_velocity && robot.missed == 0;
+    // One tag a frame tells of noise and blur.
+    const bool teach = sightings_.size() == frames_ % std::max<std::size_t>(memories_.size(), 1);
+    if (may_align && align(frame.image, sighting, teach)) {
+      found_.push_back(vision::tag_box(sighting.pose.centre_px, side_px, 0.0));
+      sightings_.push_back(sighting);
+    } else {
+      expected_.push_back({sighting.pose.centre_px, side_px, margin_px});
+    }
   }
 }
 
+// Replaces the sighting's pose by that of its pixels, if they show its tag.
+bool TagRobots::align(const cv::Mat& image, Sighting& sighting, bool teach) {
+  const TagRobotKind& kind = kinds_[sighting.kind];
+  TagAligner& aligner = aligners_[sighting.kind];
+  AlignedTag aligned;
+  if (!aligner.align(image, mosaic_, sensor_, sighting.tag_id, sighting.pose.pose_world_tag,
+                     sighting.pose.centre_px, aligned)) {
+    return false;
+  }
+  if (teach) aligner.teach(sensor_);
+  sighting.pose.pose_world_tag = aligned.pose_world_tag;
+  sighting.pose.covariance = aligned.covariance;
+  sighting.pose.centre_px =
+      pixel_near(kind.map, aligned.pose_world_tag.position_m(), sighting.pose.centre_px);
+  const double side_px =
+      kind.layout.size_m / grids_[sighting.kind]->metres_per_pixel(sighting.pose.centre_px);
+  sighting.pixels = static_cast<int>(std::lround(side_px * side_px));
+  sighting.confidence = aligned.explained;
+  return true;
+}
+
+// A tag that was detected.
+void TagRobots::take(const cv::Mat& image, const vision::TagSighting& seen) {
+  const TagRobotKind& kind = kinds_[seen.kind];
+  const auto tag = kind.layout.find(seen.tag.id);
+  const bool known = std::ranges::any_of(sightings_, [&](const Sighting& other) {
+    return other.kind == seen.kind && other.tag_id == seen.tag.id &&
+           (other.pose.centre_px - seen.tag.centre_px).norm() < seen.side_px;
+  });
+  if (!tag || known) return;
+  const TagPose pose = tag_pose(seen.tag, kind.layout.size_m, tag->mount, kind.map);
+  if (pose.misshape > kMostMisshape + 1.5 / seen.side_px) {
+    misshapen_.push_back({pose.centre_px, "tag is no square on the plane of the tags"});
+    return;
+  }
+  const double certain = std::min(1.0, seen.tag.decision_margin / kFullMargin);
+  // A bit that was corrected halves it.
+  Sighting sighting{
+      .kind = seen.kind,
+      .robot_id = tag->robot_id,
+      .tag_id = tag->tag_id,
+      .pose = pose,
+      .pixels = static_cast<int>(std::lround(seen.side_px * seen.side_px)),
+      .confidence = std::max(0.3, certain) * (seen.tag.corrected_bits == 0 ? 1.0 : 0.5)};
+  if (settings_.aligned) align(image, sighting, true);
+  sightings_.push_back(sighting);
+}
+
 void TagRobots::locate(std::vector<RejectionReport>& rejected) {
-  gather(rejected);
+  rejected.insert(rejected.end(), misshapen_.begin(), misshapen_.end());
+  for (const vision::RejectedCandidate& candidate : seen_.rejected) {
+    rejected.push_back({candidate.centre_px, vision::reject_reason_text(candidate.reason)});
+  }
   // The surest tag of a robot first: it decides which others agree with it.
   std::ranges::stable_sort(sightings_, std::ranges::greater{}, &Sighting::confidence);
   robots_.clear();
@@ -96,31 +186,6 @@ void TagRobots::locate(std::vector<RejectionReport>& rejected) {
   }
   std::ranges::stable_sort(robots_, std::ranges::greater{}, &TagRobot::tag_count);
   remember();
-}
-
-void TagRobots::gather(std::vector<RejectionReport>& rejected) {
-  sightings_.clear();
-  for (const vision::TagSighting& seen : seen_.tags) {
-    const TagRobotKind& kind = kinds_[seen.kind];
-    const auto tag = kind.layout.find(seen.tag.id);
-    if (!tag) continue;
-    const TagPose pose = tag_pose(seen.tag, kind.layout.size_m, tag->mount, kind.map);
-    if (pose.misshape > kMostMisshape + 1.5 / seen.side_px) {
-      rejected.push_back({pose.centre_px, "tag is no square on the plane of the tags"});
-      continue;
-    }
-    // A bit that was corrected halves it.
-    const double certain = std::min(1.0, seen.tag.decision_margin / (kFullMargin * 255.0));
-    sightings_.push_back(
-        {.kind = seen.kind,
-         .robot_id = tag->robot_id,
-         .pose = pose,
-         .pixels = static_cast<int>(std::lround(seen.side_px * seen.side_px)),
-         .confidence = std::max(0.3, certain) * (seen.tag.corrected_bits == 0 ? 1.0 : 0.5)});
-  }
-  for (const vision::RejectedCandidate& candidate : seen_.rejected) {
-    rejected.push_back({candidate.centre_px, vision::reject_reason_text(candidate.reason)});
-  }
 }
 
 // The robot of one tag and of all others that agree with it.

@@ -1,10 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "calibration/plane_map.h"
+#include "tracker/alignment/mosaic.h"
+#include "tracker/alignment/plane_grid.h"
+#include "tracker/alignment/sensor_model.h"
+#include "tracker/alignment/tag_aligner.h"
 #include "tracker/pose_from_markers.h"
 #include "tracker/pose_report.h"
 #include "tracker/tag_pose.h"
@@ -30,15 +36,24 @@ struct TagRobot {
   double confidence = 0.0;
 };
 
+/// How the tags of a camera become poses.
+struct TagSettings {
+  /// Poses from the pixels themselves; false: from the corners as they are detected.
+  bool aligned = true;
+  std::optional<Mosaic> mosaic = {};  ///< of the sensor; nothing: recognised by the noise
+};
+
 /// Sees the robots with tags of one camera, and remembers where they were and how they moved: so
-/// that their tags are looked for there first. Poses come from the frame alone. Not thread-safe.
+/// that their tags are aligned there, or looked for there first. Poses come from the frame alone.
+/// Not thread-safe.
 class TagRobots {
  public:
   /// For frames of this size. `kinds`: at least one. Throws InputError if tags are too small to be
   /// seen.
-  TagRobots(std::vector<TagRobotKind> kinds, int width_px, int height_px);
+  TagRobots(std::vector<TagRobotKind> kinds, int width_px, int height_px,
+            const TagSettings& settings = {});
 
-  /// Finds tags in the frame.
+  /// Finds tags in the frame: aligns those of robots that are followed, searches for others.
   void detect(const vision::Frame& frame);
   /// Their robots' poses. Tags that speak against each other of one robot give several robots of
   /// one number, the one with more and surer tags first. What is no robot goes to `rejected`.
@@ -46,6 +61,8 @@ class TagRobots {
 
   /// Of the last frame; valid until the next.
   std::span<const TagRobot> robots() const { return robots_; }
+  /// Tags of the last frame that were aligned where they were expected, without a detector.
+  std::size_t followed() const { return found_.size(); }
 
  private:
   // A robot as it was seen last.
@@ -63,23 +80,34 @@ class TagRobots {
   struct Sighting {
     std::size_t kind = 0;
     int robot_id = 0;
+    int tag_id = 0;
     TagPose pose;
     int pixels = 0;
     double confidence = 0.0;
     bool taken = false;
   };
 
-  void expect_tags(const Memory& robot, vision::CaptureTime time);
-  void gather(std::vector<RejectionReport>& rejected);
+  void look_for_mosaic(const cv::Mat& image);
+  void expect(const vision::Frame& frame, const Memory& robot);
+  bool align(const cv::Mat& image, Sighting& sighting, bool teach);
+  void take(const cv::Mat& image, const vision::TagSighting& seen);
   TagRobot robot_of(std::size_t first);
   void remember();
 
   std::vector<TagRobotKind> kinds_;
+  TagSettings settings_;
   vision::TagSearch search_;
+  std::vector<std::unique_ptr<PlaneGrid>> grids_;  // of each kind
+  std::vector<TagAligner> aligners_;               // of each kind
+  SensorModel sensor_;
+  Mosaic mosaic_ = Mosaic::kNone;
+  unsigned frames_ = 0;
   vision::CaptureTime time_{};
   std::vector<Memory> memories_;
   std::vector<vision::ExpectedTag> expected_;
+  std::vector<cv::Rect> found_;
   vision::TagSearchResult seen_;
+  std::vector<RejectionReport> misshapen_;
   std::vector<Sighting> sightings_;
   std::vector<TagPose> fused_;
   std::vector<TagRobot> robots_;

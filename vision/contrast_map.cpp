@@ -63,11 +63,10 @@ int ContrastMap::strongest() const {
 
 void ContrastMap::blank(const cv::Rect& part) {
   const int tile = tile_px();
-  // Only tiles that lie wholly in it.
-  const int left = std::max(0, (part.x + tile - 1) / tile);
-  const int top = std::max(first_, (part.y + tile - 1) / tile);
-  const int right = std::min(columns_, part.br().x / tile);
-  const int bottom = std::min(last_, part.br().y / tile);
+  const int left = std::max(0, part.x / tile);
+  const int top = std::max(first_, part.y / tile);
+  const int right = std::min(columns_, (part.br().x + tile - 1) / tile);
+  const int bottom = std::min(last_, (part.br().y + tile - 1) / tile);
   for (int row = top; row < bottom; ++row) {
     for (int column = left; column < right; ++column) {
       contrast_[static_cast<std::size_t>(row) * columns_ + column] = 0;

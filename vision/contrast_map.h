@@ -21,7 +21,7 @@ class ContrastMap {
   void look(const cv::Mat& image, int first, int last);
   /// Contrast of the brightest few tiles among those of the last look: the 99.9th percentile or so.
   int strongest() const;
-  /// Tiles that lie on this part of the image say nothing until they are looked at again.
+  /// Tiles that touch this part of the image say nothing until they are looked at again.
   void blank(const cv::Rect& part);
   /// Boxes around connected tiles of the last look whose contrast is `least` or more. The reference
   /// is valid until the next call.
