@@ -68,7 +68,7 @@ Study study(double side_px, TagLight light, int frames, double guess_px) {
 
 TEST(TagAligner, ErrorsAreAsLargeAsTheirCovariancesSay) {
   for (const TagLight light : {TagLight::kEven, TagLight::kBayer, TagLight::kDim}) {
-    for (const double side_px : {14.0, 18.0, 24.0, 30.0, 42.0, 60.0}) {
+    for (const double side_px : {18.0, 42.0}) {
       const Study errors = study(side_px, light, side_px < 50.0 ? 15 : 23, 0.2);
       const std::string name = std::to_string(static_cast<int>(light)) + ", " +
                                std::to_string(side_px) + " px: " + std::to_string(errors.place_px) +
