@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "vision/vector_clones.h"
 
@@ -69,24 +70,52 @@ void pad(DiscPatch& patch) {
   }
 }
 
+// Sixteen pixels a turn, more than a row of most discs has: the compiler takes them apart at once.
+// What lies beyond the chord is overwritten by the next row.
+constexpr int kRun = 16;
+
+NADIR_VECTOR_CLONES
+void gather_row(const std::uint8_t* bgr, int count, float du, float dv, float* to_du, float* to_dv,
+                float* blue, float* green, float* red) {
+  for (int k = 0; k < count; k += kRun) {
+    for (int i = k; i < k + kRun; ++i) {
+      to_du[i] = du + static_cast<float>(i);
+      to_dv[i] = dv;
+      blue[i] = static_cast<float>(bgr[3 * i]);
+      green[i] = static_cast<float>(bgr[3 * i + 1]);
+      red[i] = static_cast<float>(bgr[3 * i + 2]);
+    }
+  }
+}
+
 void gather_all(const cv::Mat& image, const Ellipse& ellipse, int v_begin, int v_end, int v_step,
                 int u0, int v0, DiscPatch& patch) {
   for (int v = v_begin; v < v_end; v += v_step) {
     const Chord chord = ellipse.chord(v, image.cols);
-    const std::uint8_t* pixel =
+    const int count = std::max(0, chord.end - chord.begin);
+    if (patch.count + count > kPatchCapacity - kLanes - kRun) break;
+    const std::uint8_t* pixels =
         image.ptr<std::uint8_t>(v) + 3 * static_cast<std::ptrdiff_t>(chord.begin);
-    if (patch.count + chord.end - chord.begin > kPatchCapacity - kLanes) break;
-    auto i = static_cast<std::size_t>(patch.count);
-    for (int u = chord.begin; u < chord.end; ++u, ++i, pixel += 3) {
-      patch.du[i] = static_cast<float>(u - u0);
-      patch.dv[i] = static_cast<float>(v - v0);
-      patch.use[i] = 1.0F;
-      patch.value[0][i] = pixel[0];
-      patch.value[1][i] = pixel[1];
-      patch.value[2][i] = pixel[2];
+    // Never reads past the row's end: what would lie there is arbitrary.
+    std::array<std::uint8_t, 3 * kRun> tail{};
+    const int whole =
+        chord.begin + (count + kRun - 1) / kRun * kRun <= image.cols ? count : count / kRun * kRun;
+    const auto i = static_cast<std::size_t>(patch.count);
+    const auto to = [&](int first, const std::uint8_t* from, int length) {
+      const std::size_t k = i + static_cast<std::size_t>(first);
+      gather_row(from, length, static_cast<float>(chord.begin + first - u0),
+                 static_cast<float>(v - v0), &patch.du[k], &patch.dv[k], &patch.value[0][k],
+                 &patch.value[1][k], &patch.value[2][k]);
+    };
+    to(0, pixels, whole);
+    if (whole < count) {
+      std::memcpy(tail.data(), pixels + 3 * static_cast<std::ptrdiff_t>(whole),
+                  3 * static_cast<std::size_t>(count - whole));
+      to(whole, tail.data(), count - whole);
     }
-    patch.count = static_cast<int>(i);
+    patch.count += count;
   }
+  std::fill_n(patch.use.begin(), patch.count, 1.0F);
   pad(patch);
   patch.begin = {0, 0, 0};
   patch.end = {patch.count, patch.count, patch.count};

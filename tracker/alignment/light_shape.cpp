@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kFirstDeviation = 0.1;     // of a coefficient: light may change by so much
 constexpr double kMostSlope_per_px = 4e-3;  // more is a shadow's edge
-constexpr int kSolveEvery = 8;
+constexpr int kSolveEvery = 64;
 constexpr double kMemory = 0.999;  // per slope: lamps are switched on and off
 
 }  // namespace
