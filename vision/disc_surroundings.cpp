@@ -32,7 +32,7 @@ int samples_near(const Ring& ring, const Bgr& colour, float distance2, Bgr& mean
 }  // namespace
 
 Bgr surroundings_of(const Ring& ring, const Bgr& disc_colour, const Bgr* plate) {
-  const Bgr median = median_of_ring(ring);
+  Bgr median = median_of_ring(ring);
   if (plate == nullptr) return median;
   const float near2 = kSameColour2 * (disc_colour - median).squaredNorm();
   Bgr mean;

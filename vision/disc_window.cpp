@@ -71,9 +71,10 @@ inline __attribute__((always_inline)) void load_pixels(const std::uint8_t* row, 
   const Bytes both = __builtin_shufflevector(                               //
       first, second, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,  //
       16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31);
-  const Bytes spread = {0,  1,  2,  3,  3,  4,  5,  6,  6,  7,  8,  9,  9,  10, 11, 12,
-                        16, 17, 18, 19, 19, 20, 21, 22, 22, 23, 24, 25, 25, 26, 27, 28};
-  words = reinterpret_cast<Ints>(__builtin_shuffle(both, spread));
+  const Bytes spread = __builtin_shufflevector(                       //
+      both, both, 0, 1, 2, 3, 3, 4, 5, 6, 6, 7, 8, 9, 9, 10, 11, 12,  //
+      16, 17, 18, 19, 19, 20, 21, 22, 22, 23, 24, 25, 25, 26, 27, 28);
+  words = reinterpret_cast<Ints>(spread);
 }
 
 inline __attribute__((always_inline)) float sum_of(const Floats& lanes) {
