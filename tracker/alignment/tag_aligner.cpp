@@ -12,7 +12,8 @@ namespace nadir::tracker {
 namespace {
 
 constexpr int kMostIterations = 8;
-constexpr double kSettled_px = 0.03;     // the step after this one would be smaller than any error
+constexpr int kFirstStride = 4;       // a quarter of the pixels is good enough for the first step
+constexpr double kSettled_px = 0.03;  // the step after this one would be smaller than any error
 constexpr double kFarthest_cells = 1.2;  // from the guess
 constexpr double kFarthest_rad = 0.2;
 constexpr double kLeastPixels = 60.0;
@@ -124,6 +125,7 @@ bool TagAligner::State::prepare(const cv::Mat& image, Mosaic mosaic, const Senso
   weights.margin_cells = static_cast<float>(settings.margin_sigmas) * weights.blur_cells;
   weights.noise = sensor.noise();
   weights.huber_sigmas = static_cast<float>(settings.huber_sigmas);
+  weights.stride = kFirstStride;
   const double reach_m = 0.5 * cell_m * layout.facts().cells;
   if (!gather_tag(image, mosaic, *grid, first, middle_px, reach_m, patch)) return false;
   for (int segment = 0; segment < patch.segments; ++segment) {
@@ -143,7 +145,7 @@ bool TagAligner::State::step() {
     const auto c = static_cast<std::size_t>(segment);
     const TagSums sums = sum_tag(patch, segment, *print, place(), levels[c], weights);
     const auto count = static_cast<double>(sums.pixels);
-    if (count * patch.segments < kLeastPixels) return false;
+    if (count * patch.segments * weights.stride < kLeastPixels) return false;
     evidence[c] = evidence_of(sums);
     all += evidence[c].information;
     gradient += evidence[c].gradient;
@@ -233,7 +235,8 @@ bool TagAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& s
     const double moved_m = (s.pose.position_m() - guess.position_m()).norm();
     const double turned_rad = std::abs(fusion::wrap_angle(s.pose.heading_rad - guess.heading_rad));
     if (!(moved_m < kFarthest_cells * s.cell_m) || !(turned_rad < kFarthest_rad)) return false;
-    if (s.last_step_px < kSettled_px) return s.finish(result);
+    if (s.weights.stride == 1 && s.last_step_px < kSettled_px) return s.finish(result);
+    s.weights.stride = 1;
   }
   return false;
 }

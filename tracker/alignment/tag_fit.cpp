@@ -156,9 +156,10 @@ NADIR_INLINE void sum_cells(const TagPatch& patch, int segment, const TagTemplat
   for (int k = 0; k < kTagSteps; ++k) with_t[k] = with_r[k] = with_1[k] = Floats{};
   for (Floats& sum : pairs) sum = Floats{};
   const float middle = 0.5F * static_cast<float>(print.cells);
+  const auto stride = static_cast<std::size_t>(kLanes * weights.stride);
   const auto begin = static_cast<std::size_t>(patch.begin[static_cast<std::size_t>(segment)]);
   const auto end = static_cast<std::size_t>(patch.end[static_cast<std::size_t>(segment)]);
-  for (std::size_t i = begin; i < end; i += kLanes) {
+  for (std::size_t i = begin; i < end; i += stride) {
     Cells cells;
     locate(patch, i, print, place, weights.margin_cells, cells);
     Template t;
@@ -251,9 +252,10 @@ NADIR_VECTOR_CLONES
 TagLevels fit_tag_levels(const TagPatch& patch, int segment, const TagTemplate& print,
                          const TagPlace& place, const TagWeights& weights) {
   Floats n{}, t{}, tt{}, v{}, vt{};
+  const auto stride = static_cast<std::size_t>(kLanes * weights.stride);
   const auto begin = static_cast<std::size_t>(patch.begin[static_cast<std::size_t>(segment)]);
   const auto end = static_cast<std::size_t>(patch.end[static_cast<std::size_t>(segment)]);
-  for (std::size_t i = begin; i < end; i += kLanes) {
+  for (std::size_t i = begin; i < end; i += stride) {
     Cells cells;
     locate(patch, i, print, place, weights.margin_cells, cells);
     Template now;

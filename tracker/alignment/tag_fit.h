@@ -47,6 +47,7 @@ struct TagWeights {
   float margin_cells = 0.35F;  ///< pixels nearer to the print's rim do not count
   PixelNoise noise;
   float huber_sigmas = 2.5F;
+  int stride = 1;  ///< of eight pixels after eight pixels only each stride-th counts
 };
 
 inline constexpr int kTagSteps = 5;
