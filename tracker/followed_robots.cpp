@@ -68,7 +68,9 @@ void FollowedRobots::follow(const vision::Frame& frame) {
     robot.found = false;
     robot.continued = false;
   }
-  for (FollowedRobot& robot : robots_) {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    FollowedRobot& robot = robots_[i];
+    if (i + 1 < robots_.size()) fetch(frame.image, robots_[i + 1]);
     if (robot.sightings < kSightingsToFollow) {
       needs_full_search_ = true;
       continue;
@@ -78,6 +80,23 @@ void FollowedRobots::follow(const vision::Frame& frame) {
     robot.sightings = 0;
     needs_full_search_ = true;
     full_searches_due_ = kSearchesAfterLoss - 1;
+  }
+}
+
+// Asks memory for the pixels of the robot that is next, before they are needed.
+void FollowedRobots::fetch(const cv::Mat& image, const FollowedRobot& robot) const {
+  constexpr std::ptrdiff_t kCacheLineBytes = 64;
+  const vision::PixelPoint& at = robot.aligned.centre_px;
+  const double reach_px =
+      aligners_[robot.layout].robot().reach_m / grids_[robot.layout]->metres_per_pixel(at);
+  const int row_end = std::min(image.rows, static_cast<int>(at.y() + reach_px));
+  const std::ptrdiff_t begin = 3 * std::max(0, static_cast<int>(at.x() - reach_px));
+  const std::ptrdiff_t end = 3 * std::min(image.cols, static_cast<int>(at.x() + reach_px));
+  for (int row = std::max(0, static_cast<int>(at.y() - reach_px)); row < row_end; ++row) {
+    const std::uint8_t* const line = image.ptr<std::uint8_t>(row);
+    for (std::ptrdiff_t byte = begin; byte < end; byte += kCacheLineBytes) {
+      __builtin_prefetch(line + byte);
+    }
   }
 }
 

@@ -71,6 +71,7 @@ class FollowedRobots {
  private:
   void look_for_mosaic(const cv::Mat& image);
   PoseGuess predict(const FollowedRobot& robot, vision::CaptureTime now) const;
+  void fetch(const cv::Mat& image, const FollowedRobot& robot) const;
   void align(const vision::Frame& frame, FollowedRobot& robot);
   void observe(FollowedRobot& robot) const;
   void list_obstacles(std::size_t layout, const Eigen::Vector2d& except_m);

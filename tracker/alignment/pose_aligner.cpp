@@ -319,7 +319,8 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
   s.pose = guess.pose_world_robot;
   s.blur_px = sensor.blur_px();
   s.inflation.fill(1.0);
-  s.last_step_px = kNoLimit;
+  // Of a robot that is followed the first step is mostly the last but one.
+  s.last_step_px = look != nullptr ? 0.9 * kNear_px : kNoLimit;
   s.structure.fill(1.0);
   s.shading_m2.fill(0.0);
   vision::PixelPoint centre_px = guess.centre_px;
