@@ -16,10 +16,13 @@ namespace {
 constexpr double kPixelOrigin = 0.5;
 constexpr int kSmallestSide_px = 8;  // it crashes below 6
 
-/// Two bits make false tags in large pictures, and gigabytes of tables for the larger families. In
-/// the smallest family one bit is too much already: every hundredth dark square would be a tag.
-int corrected_bits(int family) {
-  return kTagFamilies.at(static_cast<std::size_t>(family)).square_cells == 6 ? 0 : 1;
+/// In large pictures two bits make false tags, and need gigabytes of tables for the larger
+/// families. In the smallest family one bit is too much already: every hundredth dark square would
+/// be a tag.
+int corrected_bits(int family, TagReading reading) {
+  const int cells = kTagFamilies.at(static_cast<std::size_t>(family)).square_cells;
+  if (cells == 6) return 0;
+  return reading == TagReading::kThorough && cells == 8 ? 2 : 1;
 }
 
 std::vector<int> family_list(const std::string& name) {
@@ -35,7 +38,7 @@ void turn_grey(const cv::Mat& bgr, cv::Mat& grey) {
     auto* to = grey.ptr<std::uint8_t>(v);
     for (int u = 0; u < bgr.cols; ++u) {
       to[u] = static_cast<std::uint8_t>(
-          (29 * from[3 * u] + 150 * from[3 * u + 1] + 77 * from[3 * u + 2]) >> 8);
+          (29 * from[3 * u] + 150 * from[3 * u + 1] + 77 * from[3 * u + 2] + 128) >> 8);
     }
   }
 }
@@ -49,15 +52,16 @@ double area_px2(const TagObservation& tag) {
 }
 
 struct TagDetector::State {
-  State(const std::vector<int>& family_indices, double decimate)
+  State(const std::vector<int>& family_indices, double decimate, TagReading reading)
       : detector(apriltag_detector_create(), apriltag_detector_destroy) {
     detector->nthreads = 1;  // one detector per thread instead
     detector->quad_decimate = static_cast<float>(decimate);
+    detector->refine_edges = reading == TagReading::kCareful;
     for (const int family : family_indices) {
       families.push_back(library_family(family));
       indices.push_back(family);
       apriltag_detector_add_family_bits(detector.get(), families.back().get(),
-                                        corrected_bits(family));
+                                        corrected_bits(family, reading));
     }
   }
 
@@ -98,8 +102,8 @@ struct TagDetector::State {
 
 TagDetector::TagDetector(const std::string& family, double decimate)
     : TagDetector(family_list(family), decimate) {}
-TagDetector::TagDetector(const std::vector<int>& families, double decimate)
-    : state_(std::make_unique<State>(families, decimate)) {}
+TagDetector::TagDetector(const std::vector<int>& families, double decimate, TagReading reading)
+    : state_(std::make_unique<State>(families, decimate, reading)) {}
 TagDetector::~TagDetector() = default;
 TagDetector::TagDetector(TagDetector&&) noexcept = default;
 TagDetector& TagDetector::operator=(TagDetector&&) noexcept = default;

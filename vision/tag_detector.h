@@ -15,12 +15,20 @@ namespace nadir::vision {
 struct TagObservation {
   int family = 0;  ///< index into kTagFamilies
   int id = 0;
-  int corrected_bits = 0;                     ///< 0 or 1
+  int corrected_bits = 0;                     ///< 0 or 1, with a thorough reading up to 2
   PixelPoint centre_px = PixelPoint::Zero();  ///< image of the square's middle
   /// Of the square, at (-1, 1), (1, 1), (1, -1), (-1, -1) of the tag's own frame: x to the right
   /// and y down of the printed tag, half its side as the unit.
   std::array<PixelPoint, 4> corners_px{};
   double decision_margin = 0.0;  ///< mean distance of its bits from the threshold, grey levels
+};
+
+/// How much a detector believes.
+enum class TagReading {
+  kCareful,  ///< at most one wrong bit; edges fitted again to the picture's gradients
+  /// Two wrong bits, edges as the segmentation has them: finds tags also where light, paper or
+  /// focus spoil an edge or a bit, as in photographs by hand. Corners are coarser in good pictures.
+  kThorough,
 };
 
 /// Area of the square, pixels.
@@ -37,7 +45,8 @@ class TagDetector {
   /// Throws std::invalid_argument for a family that is not known.
   explicit TagDetector(const std::string& family = "tag36h11", double decimate = 1.0);
   /// Several families at once: indices into kTagFamilies.
-  TagDetector(const std::vector<int>& families, double decimate);
+  TagDetector(const std::vector<int>& families, double decimate,
+              TagReading reading = TagReading::kCareful);
   ~TagDetector();
   TagDetector(TagDetector&&) noexcept;
   TagDetector& operator=(TagDetector&&) noexcept;
