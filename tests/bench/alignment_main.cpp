@@ -8,12 +8,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/bench/alignment_study.h"
 #include "tests/bench/bench_program.h"
 #include "tests/bench/cold_search.h"
 #include "tests/bench/json_file.h"
+#include "tests/support/following_study.h"
 
 namespace {
 
@@ -26,6 +28,7 @@ struct Options {
   int frames = 200;
   double guess_px = 0.3;
   bool speed = false;
+  bool following = false;
   nadir::tracker::AlignmentSettings settings;
 };
 
@@ -103,7 +106,40 @@ nlohmann::json run_speed() {
   return cases;
 }
 
+// Who stays whom: 5000 robots in frames for each story.
+nlohmann::json run_following() {
+  using nadir::support::FollowingStory;
+  const std::vector<std::pair<const char*, FollowingStory>> stories = {
+      {"touching", {.frames = 420}},
+      {"one covered", {.frames = 420, .covers_one_disc = true}},
+      {"two covered", {.frames = 420, .covers_two_discs = true}},
+      {"clutter, carried", {.frames = 420, .balls = true, .swaps = true}}};
+  const std::filesystem::path folder = std::filesystem::path(NADIR_DATA_DIR) / "scenes";
+  fmt::print("{:<18} {:>7} {:>9} {:>7} {:>6} {:>9} {:>14} {:>7}\n", "followed", "robots",
+             "uncovered", "missed", "wrong", "phantoms", "covered, found", "rms_px");
+  nlohmann::json cases = nlohmann::json::array();
+  for (const auto& [name, story] : stories) {
+    const nadir::support::FollowingStudy study = nadir::support::study_following(
+        nadir::vision::load_scene(folder / "league_even.yaml"), story, 17);
+    fmt::print("{:<18} {:>7} {:>9} {:>7} {:>6} {:>9} {:>14} {:>7.4f}\n", name, study.robot_frames,
+               study.uncovered, study.missed, study.wrong_ids, study.phantoms, study.covered_found,
+               study.rms_px);
+    std::fflush(stdout);
+    cases.push_back({{"story", name},
+                     {"robots", study.robot_frames},
+                     {"missed", study.missed},
+                     {"wrong_ids", study.wrong_ids},
+                     {"phantoms", study.phantoms}});
+  }
+  return cases;
+}
+
 void run(const Options& options) {
+  if (options.following) {
+    nadir::bench::write_json_file(
+        {{"benchmark", "alignment following"}, {"cases", run_following()}}, options.json_file);
+    return;
+  }
   if (options.speed) {
     nadir::bench::write_json_file({{"benchmark", "alignment speed"}, {"cases", run_speed()}},
                                   options.json_file);
@@ -133,6 +169,7 @@ int main(int argc, char** argv) {
   app.add_option("--case", options.only, "only cases whose name has this in it");
   app.add_option("--frames", options.frames, "of each case")->check(CLI::Range(1, 1000000));
   app.add_flag("--speed", options.speed, "what following costs, instead");
+  app.add_flag("--following", options.following, "who stays whom, instead");
   app.add_option("--guess", options.guess_px, "RMS distance of the guesses from the truth, px");
   app.add_option("--floor", options.settings.floor_px, "error of a disc that nothing tells of, px");
   app.add_option("--huber", options.settings.huber_sigmas, "limit of Huber's weights, sigmas");
