@@ -16,9 +16,16 @@ constexpr double kLookMemory = 0.95;            // per frame
 constexpr unsigned kFramesPerMosaicCheck = 64;  // a camera keeps its sensor
 constexpr double kAgreement_sigmas = 6.0;
 constexpr double kAgreement_px = 1.0;
+constexpr double kPoor_px = 0.02;  // under a shadow's edge the detector is as good
 
 double seconds(vision::CaptureTime::duration duration) {
   return std::chrono::duration<double>(duration).count();
+}
+
+// Of the position, both axes together.
+double deviation_of(const AlignedPose& aligned, const PlaneGrid& grid) {
+  return std::sqrt(aligned.covariance.topLeftCorner<2, 2>().trace()) /
+         grid.metres_per_pixel(aligned.centre_px);
 }
 
 Eigen::Vector3d vector_of(const fusion::PlanarPose& pose) {
@@ -119,6 +126,10 @@ void FollowedRobots::align(const vision::Frame& frame, FollowedRobot& robot) {
   list_obstacles(robot.layout, guess.pose_world_robot.position_m());
   robot.found = aligners_[robot.layout].align(frame.image, mosaic_, sensor_, guess, &robot.look,
                                               obstacles_, robot.aligned);
+  if (robot.found && robot.aligned.uneven_light &&
+      deviation_of(robot.aligned, *grids_[robot.layout]) > kPoor_px) {
+    robot.found = false;  // the detector shall measure it in this frame
+  }
   if (!robot.found) return;
   aligners_[robot.layout].teach(sensor_);
   observe(robot);
@@ -159,6 +170,8 @@ bool FollowedRobots::refine(const vision::Frame& frame, std::size_t layout,
   }
   const double apart_px = (result.centre_px - centre_px).norm();
   if (apart_px > std::max(kAgreement_px, kAgreement_sigmas * deviation_px)) return false;
+  // Across a shadow's edge soft-weighted blobs may be the better measurement.
+  if (result.uneven_light && deviation_of(result, *grids_[layout]) > deviation_px) return false;
   aligners_[layout].teach(sensor_);
   return true;
 }

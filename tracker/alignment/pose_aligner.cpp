@@ -301,6 +301,10 @@ void PoseAligner::State::finish(AlignedPose& result) const {
       information.inverse() * std::max(1.0, (misfit + kMisfitPrior_dof) / (dof + kMisfitPrior_dof));
   result.pose_world_robot = pose;
   result.counting_discs = count;
+  result.uneven_light = false;
+  for (std::size_t i = 0; i < discs.size(); ++i) {
+    result.uneven_light = result.uneven_light || (counts[i] && shading_m2[i] > 0.0);
+  }
 }
 
 PoseAligner::PoseAligner(const vision::MarkerLayout& layout, const PlaneGrid& grid,

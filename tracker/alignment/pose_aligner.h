@@ -38,6 +38,7 @@ struct AlignedPose {
   std::array<AlignedDisc, vision::kMaxDiscs> discs;
   int counting_discs = 0;
   int iterations = 0;
+  bool uneven_light = false;  ///< on a disc that counts: a shadow's edge
   double misfit = 0.0;  ///< chi-square per degree of freedom of the discs against the rigid pattern
 };
 
