@@ -170,7 +170,9 @@ bool FollowedRobots::refine(const vision::Frame& frame, std::size_t layout,
   }
   const double apart_px = (result.centre_px - centre_px).norm();
   if (apart_px > std::max(kAgreement_px, kAgreement_sigmas * deviation_px)) return false;
-  // Across a shadow's edge soft-weighted blobs may be the better measurement.
+  // Across a shadow's edge soft-weighted blobs may be the better measurement; two discs have no
+  // others that outvote them.
+  if (result.uneven_light && result.counting_discs < 3) return false;
   if (result.uneven_light && deviation_of(result, *grids_[layout]) > deviation_px) return false;
   aligners_[layout].teach(sensor_);
   return true;
