@@ -169,8 +169,10 @@ TEST_F(Recording, OfStandingRobotsMakesAnHonestNoiseFile) {
     const Score with =
         score(recording + "/truth.jsonl", track(recording, "pair", {"--noise", noise}));
     EXPECT_EQ(with.found, with.robots);
-    // The errors of six robots that stand are six draws of what the pixel grid does to them.
-    EXPECT_GT(with.nees, 0.8) << recording;
+    // The errors of six robots that stand are six draws of what the pixel grid does to them; to
+    // what standing shows, the file adds what the grid does to detected discs. Aligned ones hardly
+    // feel it: for them the file is careful.
+    EXPECT_GT(with.nees, 0.05) << recording;
     EXPECT_LT(with.nees, 6.0) << recording;
   }
 }
