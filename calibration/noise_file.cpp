@@ -1,9 +1,10 @@
 // Reading of NOISE.yaml: which law gives a disc's variance from its pixel count, and with which
 // constants.
 
+#include "calibration/noise_file.h"
+
 #include <string>
 
-#include "calibration/pixel_count_variance.h"
 #include "vision/input/strict_yaml.h"
 
 namespace nadir::calibration {
@@ -12,6 +13,7 @@ namespace {
 using vision::YamlMap;
 
 constexpr const char* kVersionKey = "nadir_noise";
+constexpr const char* kFloorKey = "alignment_floor_px";
 constexpr int kNoiseVersion = 1;
 constexpr vision::ValidRange kPixels{1.0, 1e6};
 constexpr vision::ValidRange kVariance_m2{1e-15, 1.0};
@@ -62,7 +64,7 @@ PixelCountVariance::Law read_kind(const YamlMap& file) {
 
 }  // namespace
 
-PixelCountVariance load_pixel_count_variance(const std::filesystem::path& path) {
+NoiseFile load_noise_file(const std::filesystem::path& path) {
   const YamlMap file = YamlMap::load(path);
   const int version = file.integer(kVersionKey);
   if (version != kNoiseVersion) {
@@ -71,9 +73,16 @@ PixelCountVariance load_pixel_count_variance(const std::filesystem::path& path) 
                          "; this nadir reads version " + std::to_string(kNoiseVersion),
                      "see the formats in calibration/README.md");
   }
-  PixelCountVariance variance(read_kind(file));
+  NoiseFile noise;
+  noise.variance = PixelCountVariance(read_kind(file));
+  constexpr vision::ValidRange kFloor_px{0.0, 10.0};
+  if (file.has(kFloorKey)) noise.alignment_floor_px = file.number(kFloorKey, kFloor_px);
   file.finish();
-  return variance;
+  return noise;
+}
+
+PixelCountVariance load_pixel_count_variance(const std::filesystem::path& path) {
+  return load_noise_file(path).variance;
 }
 
 }  // namespace nadir::calibration

@@ -33,15 +33,20 @@ double mean_pixels(const std::vector<double>& pixels) {
   return sum / static_cast<double>(pixels.size());
 }
 
-double grid_m2(const StandingSpan& span, double grid_variance_px2) {
-  const double square_m2 = std::abs(span.jacobian_m_per_px.determinant());
-  return square_m2 * grid_variance_px2 / std::sqrt(mean_pixels(span.pixels));
+double square_m2(const StandingSpan& span) {
+  return std::abs(span.jacobian_m_per_px.determinant());
 }
 
-std::vector<Evidence> evidence(const StandingData& data, double grid_variance_px2) {
+double grid_m2(const StandingSpan& span, const NoiseLawSettings& settings) {
+  const double detected_px2 = settings.grid_variance_px2 / std::sqrt(mean_pixels(span.pixels));
+  return square_m2(span) * ((1.0 - span.aligned_share) * detected_px2 +
+                            span.aligned_share * settings.aligned_grid_variance_px2);
+}
+
+std::vector<Evidence> evidence(const StandingData& data, const NoiseLawSettings& settings) {
   std::vector<Evidence> all;
   for (const StandingSpan& span : data.spans) {
-    const double grid = grid_m2(span, grid_variance_px2);
+    const double grid = grid_m2(span, settings);
     const double marks = static_cast<double>(span.pixels.size());
     all.push_back({span.pixels, 2.0 * (span.samples - 1),
                    std::max(span.middle_variance_m2 + grid / marks, kLeastVariance_m2), grid});
@@ -118,7 +123,7 @@ double law_m2(const LawVariance& law, double pixels) {
 
 /// The class of spans [first, last), which are sorted by their counts.
 PixelClass class_of(const std::vector<const StandingSpan*>& spans, std::size_t first,
-                    std::size_t last, double grid_variance_px2) {
+                    std::size_t last, const NoiseLawSettings& settings) {
   PixelClass sum;
   double freedom = 0.0;
   for (std::size_t i = first; i < last; ++i) {
@@ -128,7 +133,7 @@ PixelClass class_of(const std::vector<const StandingSpan*>& spans, std::size_t f
     sum.samples += span.samples;
     sum.pixels += weight * mean_pixels(span.pixels);
     sum.pose_variance += weight * span.covariance.diagonal();
-    const double grid = grid_m2(span, grid_variance_px2);
+    const double grid = grid_m2(span, settings);
     sum.grid_variance_m2 += weight * grid;
     sum.mark_variance_m2 +=
         weight * (static_cast<double>(span.pixels.size()) * span.middle_variance_axes_m2 +
@@ -141,7 +146,7 @@ PixelClass class_of(const std::vector<const StandingSpan*>& spans, std::size_t f
   return sum;
 }
 
-std::vector<PixelClass> classes(const StandingData& data, double grid_variance_px2) {
+std::vector<PixelClass> classes(const StandingData& data, const NoiseLawSettings& settings) {
   std::vector<const StandingSpan*> spans;
   for (const StandingSpan& span : data.spans) spans.push_back(&span);
   std::sort(spans.begin(), spans.end(), [](const auto* a, const auto* b) {
@@ -152,7 +157,7 @@ std::vector<PixelClass> classes(const StandingData& data, double grid_variance_p
     const double start = mean_pixels(spans[first]->pixels);
     std::size_t last = first + 1;
     while (last < spans.size() && mean_pixels(spans[last]->pixels) < kClassFactor * start) ++last;
-    result.push_back(class_of(spans, first, last, grid_variance_px2));
+    result.push_back(class_of(spans, first, last, settings));
     if (result.size() > 1) {
       // Half way between the classes, in ratio.
       result.back().from_pixels =
@@ -204,6 +209,20 @@ TableVariance table(const std::vector<PixelClass>& all, double minimum_pixels) {
   return result;
 }
 
+/// The mean, over all samples, of what scattered beyond the published variance, of one mark and px.
+std::optional<double> alignment_floor_px(const StandingData& data) {
+  double samples = 0.0;
+  double sum_px2 = 0.0;
+  for (const StandingSpan& span : data.spans) {
+    if (span.aligned_share < 1.0 || !(square_m2(span) > 0.0)) continue;
+    const double beyond_m2 = span.middle_variance_m2 - span.published_middle_variance_m2;
+    samples += span.samples;
+    sum_px2 += span.samples * static_cast<double>(span.pixels.size()) * beyond_m2 / square_m2(span);
+  }
+  if (samples == 0.0) return std::nullopt;
+  return std::hypot(kAlignmentFloor_px, std::sqrt(std::max(0.0, sum_px2 / samples)));
+}
+
 std::vector<std::string> remarks(const NoiseFit& fit, const NoiseLawSettings& settings) {
   std::vector<std::string> words;
   if (!fit.has_floor) {
@@ -252,16 +271,17 @@ void check_samples(const StandingData& data, const NoiseLawSettings& settings,
 NoiseFit fit_noise(const StandingData& data, const NoiseLawSettings& settings,
                    const std::string& files) {
   check_samples(data, settings, files);
-  const std::vector<Evidence> all = evidence(data, settings.grid_variance_px2);
+  const std::vector<Evidence> all = evidence(data, settings);
   NoiseFit fit;
   const auto [low, high] = count_range(all);
   fit.has_floor = high >= kFloorFactor * low;
   fit.one_over_n = fit_law(all, fit.has_floor);
-  fit.classes = classes(data, settings.grid_variance_px2);
+  fit.classes = classes(data, settings);
   for (PixelClass& each : fit.classes) {
     each.law_ratio = each.mark_variance_m2.mean() / law_m2(fit.one_over_n, each.pixels);
   }
   fit.exponent = power(fit.classes);
+  fit.alignment_floor_px = alignment_floor_px(data);
   double freedom = 0.0;
   for (const Evidence& each : all) freedom += each.degrees_of_freedom;
   fit.relative_error = std::sqrt(2.0 / freedom);

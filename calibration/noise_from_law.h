@@ -1,18 +1,22 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "calibration/noise_file.h"
 #include "calibration/noise_from_standing.h"
-#include "calibration/pixel_count_variance.h"
 
 namespace nadir::calibration {
 
 /// What a law of the noise is asked to do.
 struct NoiseLawSettings {
-  /// What a centre's error has of the pixel grid, px^2 times the root of the pixel count. It stays
-  /// the same while a robot stands, so standing robots do not show it (vision/disc_measurement.h).
+  /// What a detected centre's error has of the pixel grid, px^2 times the root of the pixel count.
+  /// It stays the same while a robot stands, so standing robots do not show it
+  /// (vision/disc_measurement.h).
   double grid_variance_px2 = 0.0;
+  /// The same of an aligned mark, px^2 whatever its count.
+  double aligned_grid_variance_px2 = kAlignmentFloor_px * kAlignmentFloor_px;
   bool table = false;  ///< a variance for each class of counts instead of the 1/N law
   /// Samples of standing robots without which there is no fit: 100 give the variance within 10 %
   /// (one sigma), as each has two axes.
@@ -33,9 +37,12 @@ struct PixelClass {
 
 struct NoiseFit {
   PixelCountVariance::Law law;
-  LawVariance one_over_n;           ///< the fitted law, also where a table was asked for
-  bool has_floor = false;           ///< counts differ enough to tell the floor from the 1/N part
-  double exponent = -1.0;           ///< of a power law through the classes; -1 with one class
+  LawVariance one_over_n;  ///< the fitted law, also where a table was asked for
+  bool has_floor = false;  ///< counts differ enough to tell the floor from the 1/N part
+  double exponent = -1.0;  ///< of a power law through the classes; -1 with one class
+  /// Of aligned marks: the error that makes their published covariances explain how they scattered.
+  /// Nothing where no recording has aligned poses.
+  std::optional<double> alignment_floor_px;
   double relative_error = 0.0;      ///< of the variance, one sigma, from the number of samples
   std::vector<PixelClass> classes;  ///< by rising pixel count
   std::vector<std::string> remarks;

@@ -37,6 +37,7 @@ LoggedPose read_pose(const Json& robot, double time_s) {
   pose.covariance = read_covariance(robot.at("covariance"));
   pose.centre_px = {robot.at("u_px").get<double>(), robot.at("v_px").get<double>()};
   pose.pixels = robot.at("pixels").get<std::vector<double>>();
+  pose.aligned = robot.value("aligned", false);
   return pose;
 }
 

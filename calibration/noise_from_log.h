@@ -17,6 +17,7 @@ struct LoggedPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< as published
   vision::PixelPoint centre_px = vision::PixelPoint::Zero();
   std::vector<double> pixels;  ///< seen of each marker, above 0
+  bool aligned = false;        ///< with the pixels, not made of detected marks
 };
 
 /// All of one robot that one file holds, in the order of capture.

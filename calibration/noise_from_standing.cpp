@@ -136,6 +136,12 @@ StandingSpan span_of(const LoggedTrack& track, Samples samples) {
   to_middle.col(2) = -lever_m(samples);
   span.middle_variance_axes_m2 = (to_middle * found.covariance * to_middle.transpose()).diagonal();
   span.middle_variance_m2 = span.middle_variance_axes_m2.mean();
+  for (const LoggedPose& each : samples) {
+    const double share = 1.0 / static_cast<double>(samples.size());
+    span.published_middle_variance_m2 +=
+        share * (to_middle * each.covariance * to_middle.transpose()).trace() / 2.0;
+    if (each.aligned) span.aligned_share += share;
+  }
   span.jacobian_m_per_px = jacobian_m_per_px(samples, found.mean);
   return span;
 }

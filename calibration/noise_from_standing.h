@@ -20,7 +20,10 @@ struct StandingSpan {
   /// weighted middle of its markers), 2 (samples - 1) degrees of freedom.
   double middle_variance_m2 = 0.0;
   Eigen::Vector2d middle_variance_axes_m2 = Eigen::Vector2d::Zero();  ///< the same, x and y apart
-  Eigen::Matrix2d jacobian_m_per_px = Eigen::Matrix2d::Zero();        ///< of the calibration there
+  /// The same per axis as it was published, a mean.
+  double published_middle_variance_m2 = 0.0;
+  Eigen::Matrix2d jacobian_m_per_px = Eigen::Matrix2d::Zero();  ///< of the calibration there
+  double aligned_share = 0.0;  ///< of the samples: poses by alignment, not of detected marks
 };
 
 /// What recordings hold of robots that stand.

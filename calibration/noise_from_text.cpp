@@ -37,8 +37,13 @@ std::string table_yaml(const TableVariance& table) {
 
 std::string noise_yaml(const NoiseFit& fit, const std::string& origin) {
   const auto* table = std::get_if<TableVariance>(&fit.law);
-  return fmt::format("# nadir-calibrate noise, from {}\nnadir_noise: 1\n{}", origin,
-                     table != nullptr ? table_yaml(*table) : law_yaml(fit.one_over_n));
+  std::string floor;
+  if (fit.alignment_floor_px) {
+    floor = fmt::format("alignment_floor_px: {:.4g}  # for --variance fisher\n",
+                        *fit.alignment_floor_px);
+  }
+  return fmt::format("# nadir-calibrate noise, from {}\nnadir_noise: 1\n{}{}", origin,
+                     table != nullptr ? table_yaml(*table) : law_yaml(fit.one_over_n), floor);
 }
 
 std::string noise_summary(const StandingData& data, const NoiseFit& fit) {
@@ -60,6 +65,10 @@ std::string noise_summary(const StandingData& data, const NoiseFit& fit) {
       "  (one sigma: of the pose, then of one mark per axis with what the pixel grid adds)\n\n"
       "  law of a mark: {:.3g} m^2 / pixels + {:.3g} m^2\n",
       fit.one_over_n.pixel_variance_m2, fit.one_over_n.floor_m2);
+  if (fit.alignment_floor_px) {
+    text +=
+        fmt::format("  alignment's floor: {:.4f} px per mark and axis\n", *fit.alignment_floor_px);
+  }
   if (!fit.remarks.empty()) text += "\n";
   for (const std::string& remark : fit.remarks) text += "note: " + remark + "\n";
   return text;
@@ -85,6 +94,7 @@ std::string noise_json(const StandingData& data, const NoiseFit& fit) {
                                {"grid_variance_m2", each.grid_variance_m2},
                                {"law_ratio", each.law_ratio}});
   }
+  if (fit.alignment_floor_px) json["alignment_floor_px"] = *fit.alignment_floor_px;
   json["remarks"] = fit.remarks;
   return json.dump() + "\n";
 }

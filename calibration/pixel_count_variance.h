@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -74,8 +73,5 @@ class PixelCountVariance {
  private:
   Law law_;
 };
-
-/// Reads NOISE.yaml strictly (formats: calibration/README.md). Throws InputError.
-PixelCountVariance load_pixel_count_variance(const std::filesystem::path& file);
 
 }  // namespace nadir::calibration

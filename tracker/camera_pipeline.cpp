@@ -71,6 +71,18 @@ std::vector<vision::MarkerLayout> disc_layouts(const PipelineSetup& setup) {
   return layouts;
 }
 
+AlignmentSettings disc_alignment(const PipelineSetup& setup) {
+  AlignmentSettings settings;
+  settings.floor_px = setup.alignment_floor_px.value_or(settings.floor_px);
+  return settings;
+}
+
+TagAlignmentSettings tag_alignment(const PipelineSetup& setup) {
+  TagAlignmentSettings settings;
+  settings.floor_px = setup.alignment_floor_px.value_or(settings.floor_px);
+  return settings;
+}
+
 }  // namespace
 
 CameraPipeline::CameraPipeline(PipelineSetup setup, int width_px, int height_px)
@@ -78,7 +90,7 @@ CameraPipeline::CameraPipeline(PipelineSetup setup, int width_px, int height_px)
       width_px_(width_px),
       height_px_(height_px),
       maps_(maps_of(setup_)),
-      followed_(disc_layouts(setup_), maps_, width_px, height_px),
+      followed_(disc_layouts(setup_), maps_, width_px, height_px, disc_alignment(setup_)),
       tracks_(setup_.tracks) {
   int kinds = 0;
   for (std::size_t i = 0; i < setup_.layouts.size(); ++i) {
@@ -105,8 +117,9 @@ void CameraPipeline::make_tags(int first_kind) {
     kinds.push_back({*setup_.layouts[i].tags, maps_[i], i});
   }
   if (!kinds.empty()) {
-    tags_.emplace(std::move(kinds), width_px_, height_px_,
-                  TagSettings{setup_.source != PoseSource::kDetector, setup_.mosaic});
+    tags_.emplace(
+        std::move(kinds), width_px_, height_px_,
+        TagSettings{setup_.source != PoseSource::kDetector, setup_.mosaic, tag_alignment(setup_)});
   }
 }
 
@@ -365,6 +378,7 @@ RobotReport CameraPipeline::robot_report(const Sighting& sighting, int id) const
     report.pixels[i] = static_cast<int>(std::lround(robot.discs[i].pixels));
   }
   report.confidence = robot.confidence;
+  report.aligned = sighting.followed >= 0 || sighting.aligned >= 0;
   return report;
 }
 

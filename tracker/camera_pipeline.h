@@ -38,6 +38,9 @@ struct PipelineSetup {
   TrackSettings tracks = {};
   PoseSource source = PoseSource::kAlignment;
   std::optional<Mosaic> mosaic = {};  ///< of the sensor; nothing: recognised by the noise
+  /// Error of an aligned mark, per axis, that neither noise nor residuals tell of; nothing: as
+  /// small as the synthetic camera shows it.
+  std::optional<double> alignment_floor_px = {};
 };
 
 /// The story of a frame: align the robots that are followed, search for others (one detector for

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "calibration/calibration_height.h"
+#include "calibration/noise_file.h"
 #include "tracker/wire/wire_types.h"
 #include "vision/colour_file.h"
 #include "vision/input/input_error.h"
@@ -10,12 +11,14 @@
 namespace nadir::tracker {
 namespace {
 
-calibration::PixelCountVariance variance_of(const CameraConfig& config) {
-  if (!config.noise.empty()) return calibration::load_pixel_count_variance(config.noise);
+void take_noise(const CameraConfig& config, PipelineSetup& setup) {
   if (config.variance == VarianceModel::kLaw) {
-    return calibration::PixelCountVariance(calibration::LawVariance{});
+    setup.variance = calibration::PixelCountVariance(calibration::LawVariance{});
   }
-  return {};
+  if (config.noise.empty()) return;
+  calibration::NoiseFile noise = calibration::load_noise_file(config.noise);
+  setup.alignment_floor_px = noise.alignment_floor_px;
+  if (config.variance == VarianceModel::kTable) setup.variance = std::move(noise.variance);
 }
 
 PoseSource source_of(VarianceModel variance) {
@@ -68,10 +71,11 @@ PipelineSetup load_pipeline_setup(const CameraConfig& config, const TrackSetting
                       .calibration_file = config.calibration,
                       .layouts = {},
                       .colours = vision::default_colour_classes(),
-                      .variance = variance_of(config),
+                      .variance = {},
                       .tracks = tracks,
                       .source = source_of(config.variance),
                       .mosaic = config.mosaic};
+  take_noise(config, setup);
   for (const std::filesystem::path& file : config.layouts) {
     setup.layouts.push_back(vision::load_marker_layout(file));
     check_teams(setup.layouts.back(), file);

@@ -62,7 +62,9 @@ void add_camera_options(CLI::App& app, Typed& typed) {
   app.add_option("--colours", typed.colours,
                  "how the colours look to this camera (default: built in)")
       ->type_name("COLOURS.yaml");
-  app.add_option("--noise", typed.noise, "variance against pixel count; implies --variance table")
+  app.add_option("--noise", typed.noise,
+                 "variance against pixel count; implies --variance table. With --variance fisher "
+                 "only its alignment_floor_px counts")
       ->type_name("NOISE.yaml");
   app.add_option("--variance", typed.variance,
                  "where covariances come from: fisher (of the aligned pixels, default), law "

@@ -36,11 +36,11 @@ Eigen::Vector3d vector_of(const fusion::PlanarPose& pose) {
 
 FollowedRobots::FollowedRobots(const std::vector<vision::MarkerLayout>& layouts,
                                const std::vector<calibration::PlaneMap>& maps, int width_px,
-                               int height_px)
+                               int height_px, const AlignmentSettings& settings)
     : layouts_(layouts), sensor_(width_px, height_px) {
   for (std::size_t i = 0; i < layouts_.size(); ++i) {
     grids_.push_back(std::make_unique<PlaneGrid>(maps[i], width_px, height_px));
-    aligners_.emplace_back(layouts_[i], *grids_.back());
+    aligners_.emplace_back(layouts_[i], *grids_.back(), settings);
   }
   robots_.reserve(256);
   obstacles_.reserve(256);

@@ -38,7 +38,8 @@ class FollowedRobots {
  public:
   /// `maps`: of the planes of the layouts' marks.
   FollowedRobots(const std::vector<vision::MarkerLayout>& layouts,
-                 const std::vector<calibration::PlaneMap>& maps, int width_px, int height_px);
+                 const std::vector<calibration::PlaneMap>& maps, int width_px, int height_px,
+                 const AlignmentSettings& settings = {});
 
   /// Nothing: the mosaic is recognised by the frames' noise.
   void set_mosaic(std::optional<Mosaic> mosaic) { stated_mosaic_ = mosaic; }

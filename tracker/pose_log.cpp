@@ -89,7 +89,7 @@ void put_robot(fmt::memory_buffer& line, const RobotReport& robot) {
   }
   put(line, "], ");
   put_fixed(line, "confidence", robot.confidence, 4);
-  put(line, "}}");
+  put(line, ", \"aligned\": {}}}", robot.aligned);
 }
 
 void put_rejection(fmt::memory_buffer& line, const RejectionReport& rejection) {

@@ -21,6 +21,8 @@ struct RobotReport {
   std::array<int, vision::kMaxDiscs> pixels{};                ///< pixels seen of each marker
   int marker_count = 0;
   double confidence = 0.0;  ///< 0 to 1
+  /// True if the pose was aligned with the pixels, false if it is made of what a detector measured.
+  bool aligned = false;
 };
 
 struct RejectionReport {

@@ -20,6 +20,7 @@ RobotReport robot_report(const TagRobot& robot, int id, std::string_view team) {
   report.pixels = robot.pixels;
   report.marker_count = robot.tag_count;
   report.confidence = robot.confidence;
+  report.aligned = robot.aligned;
   return report;
 }
 

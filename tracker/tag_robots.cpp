@@ -66,7 +66,7 @@ TagRobots::TagRobots(std::vector<TagRobotKind> kinds, int width_px, int height_p
       sensor_(width_px, height_px) {
   for (const TagRobotKind& kind : kinds_) {
     grids_.push_back(std::make_unique<PlaneGrid>(kind.map, width_px, height_px));
-    aligners_.emplace_back(kind.layout, *grids_.back());
+    aligners_.emplace_back(kind.layout, *grids_.back(), settings_.alignment);
   }
 }
 
@@ -143,6 +143,7 @@ bool TagRobots::align(const cv::Mat& image, Sighting& sighting, bool teach) {
       kind.layout.size_m / grids_[sighting.kind]->metres_per_pixel(sighting.pose.centre_px);
   sighting.pixels = static_cast<int>(std::lround(side_px * side_px));
   sighting.confidence = aligned.explained;
+  sighting.aligned = true;
   return true;
 }
 
@@ -211,6 +212,7 @@ TagRobot TagRobots::robot_of(std::size_t first) {
     if (i != first && (apart_m > limit_m || turned_rad > kAgreement_sides)) continue;
     tag.taken = true;
     fused_.push_back(tag.pose);
+    robot.aligned = robot.aligned && tag.aligned;
     if (robot.tag_count < vision::kMaxDiscs) {
       robot.pixels[static_cast<std::size_t>(robot.tag_count++)] = tag.pixels;
     }

@@ -34,6 +34,7 @@ struct TagRobot {
   std::array<int, vision::kMaxDiscs> pixels{};  ///< of each tag's square
   int tag_count = 0;                            ///< entries of `pixels` that count
   double confidence = 0.0;
+  bool aligned = true;  ///< all tags that count, with the pixels
 };
 
 /// How the tags of a camera become poses.
@@ -41,6 +42,7 @@ struct TagSettings {
   /// Poses from the pixels themselves; false: from the corners as they are detected.
   bool aligned = true;
   std::optional<Mosaic> mosaic = {};  ///< of the sensor; nothing: recognised by the noise
+  TagAlignmentSettings alignment = {};
 };
 
 /// Sees the robots with tags of one camera, and remembers where they were and how they moved: so
@@ -84,6 +86,7 @@ class TagRobots {
     TagPose pose;
     int pixels = 0;
     double confidence = 0.0;
+    bool aligned = false;
     bool taken = false;
   };
 

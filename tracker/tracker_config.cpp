@@ -176,9 +176,15 @@ void check(const TrackerConfig& config, const std::string& file) {
       fail("camera '" + camera.name + "' has no calibration",
            "make one with nadir-calibrate, give it with --calibration");
     }
-    if ((camera.variance == VarianceModel::kTable) != !camera.noise.empty()) {
-      fail("camera '" + camera.name + "': the variance 'table' and a noise file go together",
-           "give both, as in --noise data/noise/goncalves2008.yaml, or none of them");
+    if (camera.variance == VarianceModel::kTable && camera.noise.empty()) {
+      fail("camera '" + camera.name + "': the variance 'table' needs a noise file",
+           "give one, as in --noise data/noise/goncalves2008.yaml");
+    }
+    const bool uses_noise =
+        camera.variance == VarianceModel::kTable || camera.variance == VarianceModel::kFisher;
+    if (!uses_noise && !camera.noise.empty()) {
+      fail("camera '" + camera.name + "': a noise file is for the variances 'table' and 'fisher'",
+           "leave the noise file or the variance out");
     }
     for (std::size_t j = 0; j < i; ++j) {
       if (config.cameras[j].name == camera.name) {

@@ -40,7 +40,8 @@ struct CameraConfig {
   std::vector<std::filesystem::path> layouts;
   double rate_hz = 30.0;          ///< of recordings that bring no capture times
   std::filesystem::path colours;  ///< empty: the default colours
-  std::filesystem::path noise;  ///< variance against pixel count; goes with kTable and only with it
+  /// Variance against pixel count, for kTable; error that alignment does not see, for kFisher.
+  std::filesystem::path noise;
   VarianceModel variance = VarianceModel::kFisher;
   std::optional<Mosaic> mosaic;     ///< of the sensor's colours; nothing: recognised by the noise
   std::vector<Landmark> landmarks;  ///< that stand where they were surveyed; may be empty

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "calibration/pixel_count_variance.h"
+#include "calibration/noise_file.h"
 #include "fusion/planar_pose.h"
 #include "tests/support/accuracy_study.h"
 #include "tracker/camera_pipeline.h"

@@ -7,12 +7,14 @@
 #include <fstream>
 #include <random>
 
+#include "calibration/noise_file.h"
 #include "calibration/noise_from_law.h"
 #include "calibration/noise_from_log.h"
 #include "calibration/noise_from_standing.h"
 #include "calibration/noise_from_text.h"
 #include "tests/vision/input_error_line.h"
 #include "tests/vision/scratch_folder.h"
+#include "vision/disc_measurement.h"
 
 namespace nadir::calibration {
 namespace {
@@ -49,7 +51,8 @@ class StandingRobot {
     pose.covariance.block<2, 1>(0, 2) = -variance_m2_ / kDistance_m * left;
     pose.covariance.block<1, 2>(2, 0) = pose.covariance.block<2, 1>(0, 2).transpose();
     pose.covariance(2, 2) = heading_variance;
-    pose.covariance.topLeftCorner<2, 2>() = variance_m2_ * Eigen::Matrix2d::Identity();
+    pose.covariance.topLeftCorner<2, 2>() =
+        variance_m2_ * (0.5 * ahead * ahead.transpose() + left * left.transpose());
     return pose;
   }
 
@@ -110,6 +113,55 @@ TEST(NoiseFromRecordings, OneCountIsAGuessElsewhere) {
   EXPECT_NEAR(fit.one_over_n.pixel_variance_m2 / 61.0, 1e-6, 1e-7);
   ASSERT_EQ(fit.remarks.size(), 1U);
   EXPECT_THAT(fit.remarks.front(), HasSubstr("all marks have about 61 pixels"));
+}
+
+/// Aligned poses whose published covariance knows of `published` only.
+std::vector<LoggedTrack> aligned_tracks(const Law& scatter, const Law& published) {
+  std::vector<LoggedTrack> tracks = tracks_at({30, 60, 120, 240}, scatter, 1000);
+  for (LoggedTrack& track : tracks) {
+    const double pixels = track.poses.front().pixels.front();
+    for (LoggedPose& pose : track.poses) {
+      pose.aligned = true;
+      pose.covariance *= published(pixels) / scatter(pixels);
+    }
+  }
+  return tracks;
+}
+
+TEST(NoiseFromRecordings, AlignmentsFloorIsWhatItsCovarianceDoesNotExplain) {
+  const Law published = [](double pixels) { return 4e-8 / pixels; };
+  const double floor_m2 = std::pow(0.012 * kScale_m, 2);
+  const Law shaken = [&](double pixels) { return published(pixels) + floor_m2; };
+  const NoiseFit fit = fit_noise(find_standing(aligned_tracks(shaken, published)), {}, "log");
+  ASSERT_TRUE(fit.alignment_floor_px);
+  EXPECT_NEAR(*fit.alignment_floor_px, std::hypot(0.012, kAlignmentFloor_px), 0.0005);
+  vision::ScratchFolder folder;
+  const NoiseFile file = load_noise_file(folder.write("noise.yaml", noise_yaml(fit, "log")));
+  ASSERT_TRUE(file.alignment_floor_px);
+  EXPECT_NEAR(*file.alignment_floor_px, *fit.alignment_floor_px, 1e-5);
+
+  const NoiseFit calm = fit_noise(find_standing(aligned_tracks(published, published)), {}, "log");
+  EXPECT_NEAR(calm.alignment_floor_px.value(), kAlignmentFloor_px, 1e-3);
+  const NoiseFit detected =
+      fit_noise(find_standing(tracks_at({30, 60, 120, 240}, published, 100)), {}, "log");
+  EXPECT_FALSE(detected.alignment_floor_px);
+}
+
+TEST(NoiseFromRecordings, AlignedMarksFeelLessOfThePixelGrid) {
+  const Law law = [](double pixels) { return 4e-8 / pixels; };
+  NoiseLawSettings settings;
+  settings.grid_variance_px2 = vision::kSamplingVariance_px2;
+  const NoiseFit detected =
+      fit_noise(find_standing(tracks_at({30, 60, 120, 240}, law, 200)), settings, "log");
+  const NoiseFit aligned = fit_noise(find_standing(aligned_tracks(law, law)), settings, "log");
+  const double square_m2 = kScale_m * kScale_m;
+  for (const PixelClass& each : detected.classes) {
+    EXPECT_NEAR(each.grid_variance_m2 * std::sqrt(each.pixels) / square_m2,
+                vision::kSamplingVariance_px2, 1e-4);
+  }
+  for (const PixelClass& each : aligned.classes) {
+    EXPECT_NEAR(each.grid_variance_m2 / square_m2, std::pow(kAlignmentFloor_px, 2), 1e-7);
+  }
 }
 
 TEST(NoiseFromRecordings, TableFollowsWhatNoOneOverNDoes) {

@@ -1,4 +1,4 @@
-#include "calibration/pixel_count_variance.h"
+#include "calibration/noise_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -172,7 +172,7 @@ TEST_F(Recording, OfStandingRobotsMakesAnHonestNoiseFile) {
     // The errors of six robots that stand are six draws of what the pixel grid does to them; to
     // what standing shows, the file adds what the grid does to detected discs. Aligned ones hardly
     // feel it: for them the file is careful.
-    EXPECT_GT(with.nees, 0.05) << recording;
+    EXPECT_GT(with.nees, 0.8) << recording;
     EXPECT_LT(with.nees, 6.0) << recording;
   }
 }

@@ -30,6 +30,30 @@ TEST(CameraPipeline, ReportsAFrameWithoutRobots) {
   EXPECT_GE(report.stages.total_us, report.stages.detect_us + report.stages.map_us);
 }
 
+TEST(CameraPipeline, TakesTheFloorOfAlignmentFromItsSetup) {
+  SyntheticCamera camera = synthetic_camera("pair_even", 1);
+  const auto report_with = [&](std::optional<double> floor_px) {
+    PipelineSetup setup = camera.setup;
+    setup.alignment_floor_px = floor_px;
+    CameraPipeline pipeline(setup, 640, 480);
+    FrameReport report;
+    pipeline.process(rendered_frame(camera.renderer, 0), 0.0, report);
+    return report;
+  };
+  const FrameReport calm = report_with({});
+  const FrameReport shaken = report_with(0.1);
+  ASSERT_FALSE(calm.robots.empty());
+  ASSERT_EQ(shaken.robots.size(), calm.robots.size());
+  for (std::size_t i = 0; i < calm.robots.size(); ++i) {
+    EXPECT_TRUE(calm.robots[i].aligned);
+    // Two discs of 0.1 px each, 60 mm apart.
+    const double m_per_px =
+        camera.setup.calibration.map.jacobian_m_per_px(calm.robots[i].centre_px).col(0).norm();
+    const double added_rad2 = shaken.robots[i].covariance(2, 2) - calm.robots[i].covariance(2, 2);
+    EXPECT_NEAR(std::sqrt(added_rad2) / (std::sqrt(2.0) * 0.1 * m_per_px / 0.06), 1.0, 0.1);
+  }
+}
+
 TEST(CameraPipeline, RefusesFramesOfAnotherSizeThanTheCalibrations) {
   const SyntheticCamera camera = synthetic_camera("pair_even", 1);
   EXPECT_THROW(CameraPipeline(camera.setup, 1280, 960), vision::InputError);

@@ -53,7 +53,8 @@ TEST(PoseLog, WritesEveryFieldOfAFrame) {
             (json{{"read", 10.0}, {"detect", 20.0}, {"map", 3.0}, {"total", 24.5}}));
   ASSERT_EQ(frame["robots"].size(), 1u);
   const json& robot = frame["robots"][0];
-  EXPECT_EQ(robot.size(), 10u);
+  EXPECT_EQ(robot.size(), 11u);
+  EXPECT_EQ(robot["aligned"], false);
   EXPECT_EQ(robot["id"], 3);
   EXPECT_EQ(robot["team"], "blue");
   EXPECT_NEAR(robot["x_m"].get<double>(), 0.123456789, 1e-12);

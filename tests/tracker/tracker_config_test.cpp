@@ -94,6 +94,12 @@ TEST_F(TrackerConfigFile, SaysWhatIsWrongAndWhere) {
             std::string::npos);
   EXPECT_NE(error_of("cameras: [{source: a, calibration: b, layouts: [c], variance: table}]\n"),
             "no error");
+  EXPECT_NE(error_of("cameras: [{source: a, calibration: b, layouts: [c], variance: pixels, "
+                     "noise: d}]\n"),
+            "no error");
+  EXPECT_EQ(error_of("cameras: [{source: a, calibration: b, layouts: [c], variance: fisher, "
+                     "noise: d}]\n"),
+            "no error");
 }
 
 TEST(TrackerConfig, PaceFollowsPublishing) {

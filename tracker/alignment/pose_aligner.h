@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "calibration/noise_file.h"
 #include "fusion/planar_pose.h"
 #include "tracker/alignment/disc_template.h"
 #include "tracker/alignment/mosaic.h"
@@ -58,7 +59,7 @@ struct AlignmentSettings {
   double huber_sigmas = 2.5;
   double far_sigmas = 5.0;  ///< a pixel's pull fades beyond it, once the pose is nearly right
   /// Error of a disc's centre, per axis, that neither noise nor residuals tell of.
-  double floor_px = 0.0015;
+  double floor_px = calibration::kAlignmentFloor_px;
   double rim_sigmas = 2.0;     ///< pixels nearer to the plate's rim than this many blurs are masked
   double margin_sigmas = 3.0;  ///< pixels are looked at up to this far outside of an edge
   double least_cosine = 0.97;  ///< between the expected and the seen contrast of a disc
