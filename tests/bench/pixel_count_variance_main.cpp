@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "calibration/noise_file.h"
 #include "tests/bench/bench_program.h"
 #include "tests/bench/detector_noise.h"
 #include "tests/bench/json_file.h"
