@@ -14,6 +14,8 @@ constexpr double kLongestPrediction_s = 0.2;
 constexpr double kSameRobot_m = 0.05;           // between expected and detected place
 constexpr double kLookMemory = 0.95;            // per frame
 constexpr unsigned kFramesPerMosaicCheck = 64;  // a camera keeps its sensor
+constexpr double kKnownBlur_px = 0.005;
+constexpr unsigned kRobotsPerLesson = 4;
 constexpr double kAgreement_sigmas = 6.0;
 constexpr double kAgreement_px = 1.0;
 constexpr double kPoor_px = 0.02;  // under a shadow's edge the detector is as good
@@ -131,7 +133,7 @@ void FollowedRobots::align(const vision::Frame& frame, FollowedRobot& robot) {
     robot.found = false;  // the detector shall measure it in this frame
   }
   if (!robot.found) return;
-  aligners_[robot.layout].teach(sensor_);
+  teach(frame.image, robot.layout);
   observe(robot);
 }
 
@@ -139,19 +141,12 @@ void FollowedRobots::align(const vision::Frame& frame, FollowedRobot& robot) {
 void FollowedRobots::observe(FollowedRobot& robot) const {
   const vision::MarkerLayout& layout = layouts_[robot.layout];
   const PlaneGrid& grid = *grids_[robot.layout];
-  const fusion::PlanarPose& pose = robot.aligned.pose_world_robot;
-  const double c = std::cos(pose.heading_rad);
-  const double s = std::sin(pose.heading_rad);
   const double m_per_px = grid.metres_per_pixel(robot.aligned.centre_px);
   for (int i = 0; i < robot.observation.disc_count; ++i) {
     const vision::Disc disc = layout.disc(i, robot.team, std::max(0, robot.identity));
-    const Eigen::Vector2d& p = disc.position_robot_m;
-    const Eigen::Vector2d place_m(pose.x_m + c * p.x() - s * p.y(),
-                                  pose.y_m + s * p.x() + c * p.y());
     const AlignedDisc& aligned = robot.aligned.discs[static_cast<std::size_t>(i)];
     vision::DiscObservation& seen = robot.observation.discs[static_cast<std::size_t>(i)];
-    seen.centre_px =
-        grid.pixel_near(place_m, robot.aligned.centre_px).value_or(robot.aligned.centre_px);
+    seen.centre_px = aligned.centre_px;
     seen.expected_pixels = M_PI * disc.radius_m * disc.radius_m / (m_per_px * m_per_px);
     seen.pixels = aligned.counts ? aligned.pixels : 0.0;
     seen.contrast = aligned.contrast.norm();
@@ -174,8 +169,16 @@ bool FollowedRobots::refine(const vision::Frame& frame, std::size_t layout,
   // others that outvote them.
   if (result.uneven_light && result.counting_discs < 3) return false;
   if (result.uneven_light && deviation_of(result, *grids_[layout]) > deviation_px) return false;
-  aligners_[layout].teach(sensor_);
+  teach(frame.image, layout);
   return true;
+}
+
+// Every robot teaches while little is known of the camera, later every fourth.
+void FollowedRobots::teach(const cv::Mat& image, std::size_t layout) {
+  if (sensor_.blur_deviation_px() < kKnownBlur_px && ++aligned_robots_ % kRobotsPerLesson != 0) {
+    return;
+  }
+  aligners_[layout].teach(image, mosaic_, sensor_);
 }
 
 void FollowedRobots::remember_aligned(std::size_t index, vision::CaptureTime now) {

@@ -75,6 +75,7 @@ class FollowedRobots {
   void fetch(const cv::Mat& image, const FollowedRobot& robot) const;
   void align(const vision::Frame& frame, FollowedRobot& robot);
   void observe(FollowedRobot& robot) const;
+  void teach(const cv::Mat& image, std::size_t layout);
   void list_obstacles(std::size_t layout, const Eigen::Vector2d& except_m);
 
   std::vector<vision::MarkerLayout> layouts_;
@@ -84,6 +85,7 @@ class FollowedRobots {
   std::optional<Mosaic> stated_mosaic_;
   Mosaic mosaic_ = Mosaic::kNone;
   unsigned frames_ = 0;
+  unsigned aligned_robots_ = 0;
   vision::CaptureTime last_frame_{};
   int full_searches_due_ = 1;
   bool needs_full_search_ = true;

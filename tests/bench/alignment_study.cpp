@@ -149,7 +149,7 @@ void Study::frame(std::uint64_t number, bool counts) {
     const bool found =
         aligner_.align(image, which_.mosaic, sensor_, guess, nullptr, others, aligned);
     const double time_us = thread_cpu_us() - start_us;
-    if (found) aligner_.teach(sensor_);
+    if (found) aligner_.teach(image, which_.mosaic, sensor_);
     if (!counts) continue;
     ++study_.robots;
     if (!found) {

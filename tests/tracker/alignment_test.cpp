@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tests/tracker/synthetic_setup.h"
-#include "tracker/alignment/disc_fit.h"
+#include "tracker/alignment/disc_shares.h"
 #include "tracker/alignment/pose_aligner.h"
 
 namespace nadir::tracker {
@@ -73,7 +73,7 @@ TEST(DiscShares, DerivativesAreThoseOfDifferences) {
   const auto before = std::make_unique<DiscShares>();
   const DiscEdge edge{5.0 * kScale_m, 0.8};
   const Eigen::Vector2d centre_m(0.4 * kScale_m, 0.1 * kScale_m);
-  find_shares(*patch, edge, centre_m, *here);
+  find_shares_and_blur(*patch, edge, centre_m, *here);
   const double step_m = 0.02 * kScale_m;
   const auto largest_error = [&](const auto& derivative, double step) {
     double largest = 0.0;
@@ -227,7 +227,7 @@ TEST(PoseAligner, CovarianceHolds) {
       const fusion::PlanarPose pose{truth.x_m, truth.y_m, truth.heading_rad};
       ASSERT_TRUE(aligner.align(image, Mosaic::kNone, sensor, {pose, {truth.u_px, truth.v_px}},
                                 nullptr, {}, aligned));
-      aligner.teach(sensor);
+      aligner.teach(image, Mosaic::kNone, sensor);
       if (frame < 10) continue;
       const Eigen::Vector3d error = fusion::pose_difference(aligned.pose_world_robot, pose);
       Eigen::Matrix3d covariance = aligned.covariance;

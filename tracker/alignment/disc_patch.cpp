@@ -6,62 +6,98 @@
 #include <cstdint>
 #include <cstring>
 
+#include "tracker/alignment/lanes.h"
 #include "vision/vector_clones.h"
 
 namespace nadir::tracker {
 namespace {
 
-using lanes::Floats;
-using lanes::kLanes;
-using lanes::load;
-using lanes::store;
+constexpr int kRun = 8;           // pixels that are taken apart at once
+constexpr int kRunBytes = 28;     // that are read for them
+constexpr int kLeastHole_px = 5;  // a shorter one in a row costs more to leave out than to look at
 
-// The quadratic of one coordinate of the plane, counted from some point.
-struct Quadratic {
-  float c0, cu, cv, cuu, cuv, cvv;
-};
-
-Quadratic quadratic(const LocalPlane& plane, const Eigen::Vector2d& from_m, int axis) {
-  return {static_cast<float>(plane.origin_m[axis] - from_m[axis]),
-          static_cast<float>(plane.slope(axis, 0)),
-          static_cast<float>(plane.slope(axis, 1)),
-          static_cast<float>(plane.bend(axis, 0)),
-          static_cast<float>(plane.bend(axis, 1)),
-          static_cast<float>(plane.bend(axis, 2))};
-}
-
-NADIR_INLINE void evaluate(const Quadratic& q, const Floats& du, const Floats& dv, Floats& value) {
-  value = q.c0 + du * (q.cu + q.cuu * du + q.cuv * dv) + dv * (q.cv + q.cvv * dv);
-}
-
-// The pixels of a row that lie in an ellipse.
+// Pixels of a row, the last not included.
 struct Chord {
-  int begin;
-  int end;  // not included
+  int begin = 0;
+  int end = 0;
 };
 
-// The window as an ellipse about `centre` in the image: offsets d with d^T metric d <= reach^2.
-struct Ellipse {
-  Eigen::Matrix2d metric;  // slope^T slope, m^2 per px^2
-  double reach2_m2;
-  vision::PixelPoint centre;
+// The window as a ring between two ellipses about `centre` in the image: offsets d with
+// inner2 < d^T metric d <= outer2.
+class Ring {
+ public:
+  Ring(const Eigen::Matrix2d& slope, const PatchWindow& window)
+      : centre_(window.centre_px), metric_(slope.transpose() * slope) {
+    determinant_ = metric_.determinant();
+    m_per_px_ = std::sqrt(std::sqrt(determinant_));
+    const double margin_m = window.margin_px * m_per_px_;
+    const double outer_m = window.radius_m + margin_m;
+    const double inner_m = window.whole ? 0.0 : std::max(0.0, window.radius_m - margin_m);
+    outer2_m2_ = outer_m * outer_m;
+    inner2_m2_ = inner_m * inner_m;
+  }
 
-  double half_height_px() const {
-    return std::sqrt(reach2_m2 * metric(0, 0) / metric.determinant());
+  double half_height_px() const { return std::sqrt(outer2_m2_ * metric_(0, 0) / determinant_); }
+  double area_px() const { return M_PI * (outer2_m2_ - inner2_m2_) / (m_per_px_ * m_per_px_); }
+
+  // One or two chords of a row; two with a hole between them.
+  int chords(int v, int columns, std::array<Chord, 2>& result) const {
+    const double dv = v - centre_.y();
+    const double middle = centre_.x() - metric_(0, 1) / metric_(0, 0) * dv;
+    const double across2 = determinant_ / metric_(0, 0) * dv * dv;
+    const double outer = std::sqrt(std::max(0.0, (outer2_m2_ - across2) / metric_(0, 0)));
+    const Chord all = {std::max(0, static_cast<int>(std::ceil(middle - outer))),
+                       std::min(columns, static_cast<int>(std::floor(middle + outer)) + 1)};
+    if (across2 < inner2_m2_) {
+      const double inner = std::sqrt((inner2_m2_ - across2) / metric_(0, 0));
+      const Chord hole = {static_cast<int>(std::floor(middle - inner)) + 1,
+                          static_cast<int>(std::ceil(middle + inner))};
+      if (hole.end - hole.begin >= kLeastHole_px && hole.begin > all.begin && hole.end < all.end) {
+        result = {Chord{all.begin, hole.begin}, Chord{hole.end, all.end}};
+        return 2;
+      }
+    }
+    result[0] = all;
+    return all.end > all.begin ? 1 : 0;
   }
-  Chord chord(int v, int columns) const {
-    const double dv = v - centre.y();
-    const double middle = centre.x() - metric(0, 1) / metric(0, 0) * dv;
-    const double left = reach2_m2 - metric.determinant() / metric(0, 0) * dv * dv;
-    if (left < 0.0) return {0, 0};
-    const double half = std::sqrt(left / metric(0, 0));
-    return {std::max(0, static_cast<int>(std::ceil(middle - half))),
-            std::min(columns, static_cast<int>(std::floor(middle + half)) + 1)};
-  }
+
+ private:
+  vision::PixelPoint centre_;
+  Eigen::Matrix2d metric_;  // m^2 per px^2
+  double determinant_;
+  double m_per_px_;
+  double outer2_m2_;
+  double inner2_m2_;
 };
+
+// What all rows have in common.
+struct Rows {
+  int begin, end, step;
+  int u0, v0;               // from where pixels count
+  float level, by_u, by_v;  // light there over that of the disc's middle, and its change
+};
+
+Rows rows_of(const Ring& ring, const PatchWindow& window, const cv::Mat& image, bool mosaic) {
+  Rows rows;
+  const double half_height = ring.half_height_px();
+  rows.begin = std::max(0, static_cast<int>(std::ceil(window.centre_px.y() - half_height)));
+  rows.end =
+      std::min(image.rows, static_cast<int>(std::floor(window.centre_px.y() + half_height)) + 1);
+  // Of large discs; with a mosaic by threes or more odd ones, so that both kinds of rows stay.
+  rows.step = 1;
+  while (ring.area_px() / rows.step > 0.85 * kPatchCapacity) rows.step += mosaic ? 2 : 1;
+  rows.u0 = static_cast<int>(std::lround(window.centre_px.x()));
+  rows.v0 = static_cast<int>(std::lround(window.centre_px.y()));
+  const Eigen::Vector2d& slope = window.light_slope_per_px;
+  const vision::PixelPoint from(rows.u0, rows.v0);
+  rows.level = static_cast<float>(1.0 - slope.dot(window.centre_px - from));
+  rows.by_u = static_cast<float>(slope.x());
+  rows.by_v = static_cast<float>(slope.y());
+  return rows;
+}
 
 void pad(DiscPatch& patch) {
-  while (patch.count % kLanes != 0) {
+  while (patch.count % kRun != 0) {
     const auto i = static_cast<std::size_t>(patch.count++);
     patch.du[i] = 0.0F;
     patch.dv[i] = 0.0F;
@@ -70,50 +106,71 @@ void pad(DiscPatch& patch) {
   }
 }
 
-// Sixteen pixels a turn, more than a row of most discs has: the compiler takes them apart at once.
-// What lies beyond the chord is overwritten by the next row.
-constexpr int kRun = 16;
+// NOLINTBEGIN(modernize-use-using)
+typedef std::uint8_t Bytes __attribute__((vector_size(16)));
+typedef std::int32_t Words __attribute__((vector_size(4 * kRun)));
+typedef float Values __attribute__((vector_size(4 * kRun)));
+// NOLINTEND(modernize-use-using)
 
-NADIR_VECTOR_CLONES
-void gather_row(const std::uint8_t* bgr, int count, float du, float dv, float* to_du, float* to_dv,
-                float* blue, float* green, float* red) {
-  for (int k = 0; k < count; k += kRun) {
-    for (int i = k; i < k + kRun; ++i) {
-      to_du[i] = du + static_cast<float>(i);
-      to_dv[i] = dv;
-      blue[i] = static_cast<float>(bgr[3 * i]);
-      green[i] = static_cast<float>(bgr[3 * i + 1]);
-      red[i] = static_cast<float>(bgr[3 * i + 2]);
-    }
+// Eight pixels of blue, green and red, each in a word whose highest byte is another's.
+NADIR_INLINE void spread_out(const std::uint8_t* bgr, Words& words) {
+  Bytes halves[2];
+  std::memcpy(&halves[0], bgr, sizeof(Bytes));
+  std::memcpy(&halves[1], bgr + kRunBytes - sizeof(Bytes), sizeof(Bytes));
+  for (Bytes& half : halves) {
+    half = __builtin_shufflevector(half, half, 0, 1, 2, 3, 3, 4, 5, 6, 6, 7, 8, 9, 9, 10, 11, 12);
   }
+  std::memcpy(&words, halves, sizeof(words));
 }
 
-void gather_all(const cv::Mat& image, const Ellipse& ellipse, int v_begin, int v_end, int v_step,
-                int u0, int v0, DiscPatch& patch) {
-  for (int v = v_begin; v < v_end; v += v_step) {
-    const Chord chord = ellipse.chord(v, image.cols);
-    const int count = std::max(0, chord.end - chord.begin);
-    if (patch.count + count > kPatchCapacity - kLanes - kRun) break;
-    const std::uint8_t* pixels =
-        image.ptr<std::uint8_t>(v) + 3 * static_cast<std::ptrdiff_t>(chord.begin);
+// Writes eight pixels from `i` on, whether or not so many are wanted.
+NADIR_INLINE void take_run(const std::uint8_t* bgr, const Rows& rows, float du, float dv,
+                           std::size_t i, DiscPatch& patch) {
+  Words words;
+  spread_out(bgr, words);
+  const Values from_first = {0, 1, 2, 3, 4, 5, 6, 7};
+  const Values across = from_first + du;
+  const Values down = from_first * 0.0F + dv;
+  const Values per_light = 1.0F / (rows.level + rows.by_u * across + rows.by_v * down);
+  const Values blue = __builtin_convertvector(words & 255, Values) * per_light;
+  const Values green = __builtin_convertvector(words >> 8 & 255, Values) * per_light;
+  const Values red = __builtin_convertvector(words >> 16 & 255, Values) * per_light;
+  std::memcpy(&patch.du[i], &across, sizeof(Values));
+  std::memcpy(&patch.dv[i], &down, sizeof(Values));
+  std::memcpy(&patch.value[0][i], &blue, sizeof(Values));
+  std::memcpy(&patch.value[1][i], &green, sizeof(Values));
+  std::memcpy(&patch.value[2][i], &red, sizeof(Values));
+}
+
+NADIR_INLINE void take_chord(const std::uint8_t* row, int row_bytes, const Chord& chord, int v,
+                             const Rows& rows, DiscPatch& patch) {
+  const int count = chord.end - chord.begin;
+  const auto dv = static_cast<float>(v - rows.v0);
+  for (int first = 0; first < count; first += kRun) {
+    const int u = chord.begin + first;
+    const std::uint8_t* bgr = row + 3 * static_cast<std::ptrdiff_t>(u);
     // Never reads past the row's end: what would lie there is arbitrary.
-    std::array<std::uint8_t, 3 * kRun> tail{};
-    const int whole =
-        chord.begin + (count + kRun - 1) / kRun * kRun <= image.cols ? count : count / kRun * kRun;
-    const auto i = static_cast<std::size_t>(patch.count);
-    const auto to = [&](int first, const std::uint8_t* from, int length) {
-      const std::size_t k = i + static_cast<std::size_t>(first);
-      gather_row(from, length, static_cast<float>(chord.begin + first - u0),
-                 static_cast<float>(v - v0), &patch.du[k], &patch.dv[k], &patch.value[0][k],
-                 &patch.value[1][k], &patch.value[2][k]);
-    };
-    to(0, pixels, whole);
-    if (whole < count) {
-      std::memcpy(tail.data(), pixels + 3 * static_cast<std::ptrdiff_t>(whole),
-                  3 * static_cast<std::size_t>(count - whole));
-      to(whole, tail.data(), count - whole);
+    std::array<std::uint8_t, kRunBytes> tail{};
+    if (3 * u + kRunBytes > row_bytes) {
+      std::memcpy(tail.data(), bgr, static_cast<std::size_t>(row_bytes - 3 * u));
+      bgr = tail.data();
     }
-    patch.count += count;
+    take_run(bgr, rows, static_cast<float>(u - rows.u0), dv,
+             static_cast<std::size_t>(patch.count + first), patch);
+  }
+  patch.count += count;
+}
+
+NADIR_VECTOR_CLONES
+void gather_all(const cv::Mat& image, const Ring& ring, const Rows& rows, DiscPatch& patch) {
+  std::array<Chord, 2> chords;
+  for (int v = rows.begin; v < rows.end; v += rows.step) {
+    const int chord_count = ring.chords(v, image.cols, chords);
+    for (int k = 0; k < chord_count; ++k) {
+      if (patch.count + chords[k].end - chords[k].begin > kPatchCapacity - 2 * kRun) break;
+      take_chord(image.ptr<std::uint8_t>(v), 3 * image.cols, chords[k], v, rows, patch);
+    }
+    if (chord_count == 2) patch.skipped += chords[1].begin - chords[0].end;
   }
   std::fill_n(patch.use.begin(), patch.count, 1.0F);
   pad(patch);
@@ -121,27 +178,38 @@ void gather_all(const cv::Mat& image, const Ellipse& ellipse, int v_begin, int v
   patch.end = {patch.count, patch.count, patch.count};
 }
 
-void gather_native(const cv::Mat& image, Mosaic mosaic, const Ellipse& ellipse, int v_begin,
-                   int v_end, int v_step, int u0, int v0, DiscPatch& patch) {
+void gather_native(const cv::Mat& image, Mosaic mosaic, const Ring& ring, const Rows& rows,
+                   DiscPatch& patch) {
   const std::array<int, 4> native = native_channels(mosaic);
-  const int channels = image.channels();
+  const std::ptrdiff_t channels = image.channels();
+  std::array<Chord, 2> chords;
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);
     patch.begin[channel] = patch.count;
-    for (int v = v_begin; v < v_end; v += v_step) {
-      const Chord chord = ellipse.chord(v, image.cols);
-      if (patch.count + chord.end - chord.begin > kPatchCapacity - kLanes) break;
+    for (int v = rows.begin; v < rows.end; v += rows.step) {
+      const int chord_count = ring.chords(v, image.cols, chords);
       const std::uint8_t* row = image.ptr<std::uint8_t>(v) + (channels == 3 ? c : 0);
+      const std::array<int, 2> of_row = {native[static_cast<std::size_t>(2 * (v & 1))],
+                                         native[static_cast<std::size_t>(2 * (v & 1) + 1)]};
+      if (of_row[0] != c && of_row[1] != c) continue;
+      const int parity = of_row[0] == c ? 0 : 1;
+      const auto dv = static_cast<float>(v - rows.v0);
       auto i = static_cast<std::size_t>(patch.count);
-      for (int u = chord.begin; u < chord.end; ++u) {
-        if (native[static_cast<std::size_t>(2 * (v & 1) + (u & 1))] != c) continue;
-        patch.du[i] = static_cast<float>(u - u0);
-        patch.dv[i] = static_cast<float>(v - v0);
-        patch.use[i] = 1.0F;
-        patch.value[channel][i] = row[static_cast<std::ptrdiff_t>(channels) * u];
-        ++i;
+      for (int k = 0; k < chord_count; ++k) {
+        const Chord& chord = chords[static_cast<std::size_t>(k)];
+        if (i + static_cast<std::size_t>(chord.end - chord.begin) > kPatchCapacity - kRun) break;
+        for (int u = chord.begin + ((chord.begin & 1) != parity ? 1 : 0); u < chord.end; u += 2) {
+          const auto du = static_cast<float>(u - rows.u0);
+          patch.du[i] = du;
+          patch.dv[i] = dv;
+          patch.use[i] = 1.0F;
+          patch.value[channel][i] = static_cast<float>(row[channels * u]) /
+                                    (rows.level + rows.by_u * du + rows.by_v * dv);
+          ++i;
+        }
       }
       patch.count = static_cast<int>(i);
+      if (chord_count == 2) patch.skipped += (chords[1].begin - chords[0].end) / 2;
     }
     pad(patch);
     patch.end[channel] = patch.count;
@@ -153,124 +221,19 @@ void gather_native(const cv::Mat& image, Mosaic mosaic, const Ellipse& ellipse, 
 bool gather(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid, const PatchWindow& window,
             DiscPatch& patch) {
   patch.count = 0;
+  patch.skipped = 0;
   const int u0 = static_cast<int>(std::lround(window.centre_px.x()));
   const int v0 = static_cast<int>(std::lround(window.centre_px.y()));
   patch.plane = grid.about(u0, v0);
   patch.origin_px = {u0, v0};
-  Ellipse ellipse;
-  ellipse.metric = patch.plane.slope.transpose() * patch.plane.slope;
-  const double m_per_px = std::sqrt(std::sqrt(ellipse.metric.determinant()));
-  const double reach_m = window.radius_m + window.margin_px * m_per_px;
-  ellipse.reach2_m2 = reach_m * reach_m;
-  ellipse.centre = window.centre_px;
-  const double half_height = ellipse.half_height_px();
-  const int v_begin = std::max(0, static_cast<int>(std::ceil(window.centre_px.y() - half_height)));
-  const int v_end =
-      std::min(image.rows, static_cast<int>(std::floor(window.centre_px.y() + half_height)) + 1);
-  // Rows left out of large discs; with a mosaic by threes or more odd ones, so that both kinds of
-  // rows stay.
-  const double area_px = M_PI * ellipse.reach2_m2 / (m_per_px * m_per_px);
-  int v_step = 1;
-  while (area_px / v_step > 0.9 * kPatchCapacity) v_step += mosaic == Mosaic::kNone ? 1 : 2;
+  const Ring ring(patch.plane.slope, window);
+  const Rows rows = rows_of(ring, window, image, mosaic != Mosaic::kNone);
   if (mosaic == Mosaic::kNone) {
-    gather_all(image, ellipse, v_begin, v_end, v_step, u0, v0, patch);
+    gather_all(image, ring, rows, patch);
   } else {
-    gather_native(image, mosaic, ellipse, v_begin, v_end, v_step, u0, v0, patch);
+    gather_native(image, mosaic, ring, rows, patch);
   }
   return patch.count > 0;
-}
-
-NADIR_VECTOR_CLONES
-void flatten(const vision::PixelPoint& centre_px, const Eigen::Vector2d& light_slope_per_px,
-             DiscPatch& patch) {
-  const auto slope_u = static_cast<float>(light_slope_per_px.x());
-  const auto slope_v = static_cast<float>(light_slope_per_px.y());
-  const auto level = static_cast<float>(1.0 - light_slope_per_px.dot(centre_px - patch.origin_px));
-  for (int c = 0; c < 3; ++c) {
-    float* const values = patch.value[c].data();
-    for (int i = patch.begin[c]; i < patch.end[c]; i += kLanes) {
-      Floats du;
-      Floats dv;
-      Floats value;
-      load(&patch.du[i], du);
-      load(&patch.dv[i], dv);
-      load(values + i, value);
-      store(value / (level + slope_u * du + slope_v * dv), values + i);
-    }
-  }
-}
-
-NADIR_VECTOR_CLONES
-void mask(const PlateShape& plate, const Eigen::Vector2d& origin_m, const Eigen::Vector2d& forward,
-          const Obstacle* obstacles, int obstacle_count, DiscPatch& patch) {
-  const Quadratic x = quadratic(patch.plane, origin_m, 0);
-  const Quadratic y = quadratic(patch.plane, origin_m, 1);
-  const auto cosine = static_cast<float>(forward.x());
-  const auto sine = static_cast<float>(forward.y());
-  const auto radius2 = static_cast<float>(plate.radius_m * plate.radius_m);
-  const auto front = static_cast<float>(plate.front_m);
-  std::array<float, kMostObstacles> ox;
-  std::array<float, kMostObstacles> oy;
-  std::array<float, kMostObstacles> o2;
-  obstacle_count = std::min(obstacle_count, kMostObstacles);
-  for (int k = 0; k < obstacle_count; ++k) {
-    ox[k] = static_cast<float>(obstacles[k].place_m.x() - origin_m.x());
-    oy[k] = static_cast<float>(obstacles[k].place_m.y() - origin_m.y());
-    o2[k] = static_cast<float>(obstacles[k].radius_m * obstacles[k].radius_m);
-  }
-  const Floats zero = {};
-  for (int i = 0; i < patch.count; i += kLanes) {
-    Floats du;
-    Floats dv;
-    Floats use;
-    load(&patch.du[i], du);
-    load(&patch.dv[i], dv);
-    load(&patch.use[i], use);
-    Floats px;
-    Floats py;
-    evaluate(x, du, dv, px);
-    evaluate(y, du, dv, py);
-    use = px * px + py * py < radius2 ? use : zero;
-    use = cosine * px + sine * py < front ? use : zero;
-    for (int k = 0; k < obstacle_count; ++k) {
-      const Floats dx = px - ox[k];
-      const Floats dy = py - oy[k];
-      use = dx * dx + dy * dy > o2[k] ? use : zero;
-    }
-    store(use, &patch.use[i]);
-  }
-}
-
-NADIR_VECTOR_CLONES
-void leave_to(const Eigen::Vector2d& own_centre_m, double own_radius_m,
-              const Eigen::Vector2d& other_centre_m, double other_radius_m, DiscPatch& patch) {
-  const Quadratic x = quadratic(patch.plane, own_centre_m, 0);
-  const Quadratic y = quadratic(patch.plane, own_centre_m, 1);
-  const auto ox = static_cast<float>(other_centre_m.x() - own_centre_m.x());
-  const auto oy = static_cast<float>(other_centre_m.y() - own_centre_m.y());
-  const auto difference = static_cast<float>(own_radius_m - other_radius_m);
-  const Floats zero = {};
-  constexpr float kTiny = 1e-12F;
-  for (int i = 0; i < patch.count; i += kLanes) {
-    Floats du;
-    Floats dv;
-    Floats use;
-    load(&patch.du[i], du);
-    load(&patch.dv[i], dv);
-    load(&patch.use[i], use);
-    Floats px;
-    Floats py;
-    evaluate(x, du, dv, px);
-    evaluate(y, du, dv, py);
-    const Floats own2 = px * px + py * py + kTiny;
-    const Floats other2 = (px - ox) * (px - ox) + (py - oy) * (py - oy) + kTiny;
-    Floats per_own;
-    Floats per_other;
-    lanes::inverse_root(own2, per_own);
-    lanes::inverse_root(other2, per_other);
-    use = own2 * per_own - other2 * per_other < difference ? use : zero;
-    store(use, &patch.use[i]);
-  }
 }
 
 }  // namespace nadir::tracker

@@ -4,20 +4,12 @@
 #include <array>
 #include <opencv2/core.hpp>
 
-#include "tracker/alignment/lanes.h"
 #include "tracker/alignment/mosaic.h"
 #include "tracker/alignment/plane_grid.h"
 
 namespace nadir::tracker {
 
 inline constexpr int kPatchCapacity = 2048;  ///< pixels of a disc that are looked at, at most
-inline constexpr int kMostObstacles = 12;
-
-/// A circle on the plane whose inside says nothing of a disc: another robot.
-struct Obstacle {
-  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
-  double radius_m = 0.0;
-};
 
 /// The pixels about one disc, as flat lists that loops run over eight at a time. With a mosaic only
 /// those values that were measured: then the three channels have pixels of their own, one after the
@@ -25,7 +17,8 @@ struct Obstacle {
 struct DiscPatch {
   LocalPlane plane;  ///< about the pixel from which du, dv count
   vision::PixelPoint origin_px = vision::PixelPoint::Zero();  ///< that pixel
-  int count = 0;  ///< of all pixels, a multiple of kLanes
+  int count = 0;    ///< of all pixels, a multiple of eight
+  int skipped = 0;  ///< pixels in the middle of a large disc that were left out
   /// Pixels [begin[c], end[c]) have values of channel c in value[c], at the same places.
   std::array<int, 3> begin{};
   std::array<int, 3> end{};
@@ -40,7 +33,10 @@ struct PatchWindow {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();  ///< of the disc
   vision::PixelPoint centre_px = vision::PixelPoint::Zero();
   double radius_m = 0.0;
-  double margin_px = 0.0;  ///< outside of the edge
+  double margin_px = 0.0;  ///< about the edge
+  bool whole = false;      ///< all of the disc, not only what is near its edge
+  /// Relative change of the light per pixel, to be taken out of the values.
+  Eigen::Vector2d light_slope_per_px = Eigen::Vector2d::Zero();
 };
 
 /// Fills the patch with pixels of `image` (CV_8UC3, or with a mosaic CV_8UC1 too) whose middle lies
@@ -48,24 +44,5 @@ struct PatchWindow {
 /// in the image.
 bool gather(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid, const PatchWindow& window,
             DiscPatch& patch);
-
-/// Takes a slope of light about `centre_px` out of the values.
-void flatten(const vision::PixelPoint& centre_px, const Eigen::Vector2d& light_slope_per_px,
-             DiscPatch& patch);
-
-/// Where a robot's plate ends, in its own frame.
-struct PlateShape {
-  double radius_m = 0.0;  ///< of the circle about the robot's origin
-  double front_m = 0.0;   ///< cut flat here
-};
-
-/// Sets use = 0 for pixels beyond the plate of the robot at `origin_m`, whose front is at
-/// `forward` (a unit vector), and for those in obstacles.
-void mask(const PlateShape& plate, const Eigen::Vector2d& origin_m, const Eigen::Vector2d& forward,
-          const Obstacle* obstacles, int obstacle_count, DiscPatch& patch);
-
-/// Sets use = 0 for pixels that are nearer to the edge of another disc than to that of this one.
-void leave_to(const Eigen::Vector2d& own_centre_m, double own_radius_m,
-              const Eigen::Vector2d& other_centre_m, double other_radius_m, DiscPatch& patch);
 
 }  // namespace nadir::tracker

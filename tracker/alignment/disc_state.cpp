@@ -38,9 +38,13 @@ double CentreEvidence::chi_square_per_dof(const Eigen::Vector2d& step_m) const {
 }
 
 void DiscState::start(const DiscEdge& edge, const Eigen::Vector2d& centre_m) {
-  find_shares(patch, edge, centre_m, shares);
-  for (int c = 0; c < 3; ++c) levels[static_cast<std::size_t>(c)] = fit_levels(patch, shares, c);
-  for (auto& channel : base_) std::fill_n(channel.begin(), patch.count, 0.0F);
+  start_anew(edge, centre_m);
+  levels = fit_levels(patch, shares, share_sum_);
+}
+
+void DiscState::start_anew(const DiscEdge& edge, const Eigen::Vector2d& centre_m) {
+  find_shares_and_blur(patch, edge, centre_m, shares);
+  shares_centre_m_ = centre_m;
 }
 
 void DiscState::set_neighbour(int k, const DiscEdge& edge, const Eigen::Vector2d& centre_m,
@@ -58,19 +62,22 @@ void DiscState::set_neighbour(int k, const DiscEdge& edge, const Eigen::Vector2d
   }
 }
 
-const float* DiscState::base(int channel) const {
-  return neighbours[0] < 0 ? nullptr : base_[static_cast<std::size_t>(channel)].data();
+ChannelModel DiscState::model(int channel, const PixelNoise& noise,
+                              const OutlierLimits& limits) const {
+  const auto c = static_cast<std::size_t>(channel);
+  return {channel, levels[c], neighbours[0] < 0 ? nullptr : base_[c].data(), noise, limits};
 }
 
 CentreEvidence DiscState::evaluate(const DiscEdge& edge, const Eigen::Vector2d& centre_m,
                                    const PixelNoise& noise, const OutlierLimits& limits) {
-  find_shares(patch, edge, centre_m, shares);
+  if (centre_m != shares_centre_m_) find_shares(patch, edge, centre_m, shares);
+  shares_centre_m_ = centre_m;
   CentreEvidence evidence;
   double pull = 0.0;
   double pull_of_noise = 0.0;
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);
-    const ChannelSums sums = sum_channel(patch, shares, c, levels[channel], base(c), noise, limits);
+    const ChannelSums sums = sum_channel(patch, shares, model(c, noise, limits));
     sums_[channel] = sums;
     const double contrast = levels[channel].contrast;
     const Normal n = normal_of(sums, contrast);
@@ -99,7 +106,7 @@ double DiscState::structure(const CentreEvidence& evidence, const PixelNoise& no
     const double contrast = levels[channel].contrast;
     const Normal n = normal_of(sums_[channel], contrast);
     if (!n.solvable) continue;
-    pulls_of(patch, shares, c, levels[channel], base(c), noise, limits, pulls_.data());
+    pulls_of(patch, shares, model(c, noise, limits), pulls_.data());
     // A pixel pulls by its derivative less what level and contrast would take of it.
     const Eigen::Matrix2f taken = (n.aa_inverse * n.ab).cast<float>();
     const auto k = static_cast<float>(contrast);
@@ -131,7 +138,7 @@ DiscState::Slope DiscState::light_slope(const PixelNoise& noise) const {
   double residual_sum = 0.0;
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);
-    const float* const below = base(c);
+    const float* const below = neighbours[0] < 0 ? nullptr : base_[channel].data();
     const ChannelLevels& fitted = levels[channel];
     for (int i = patch.begin[channel]; i < patch.end[channel]; ++i) {
       const auto p = static_cast<std::size_t>(i);
@@ -167,15 +174,6 @@ void DiscState::follow(const Eigen::Vector2d& step_m) {
     levels[c].level += change[0];
     levels[c].contrast += change[1];
   }
-}
-
-double DiscState::pixels_in_disc() const {
-  double sum = 0.0;
-  for (int i = 0; i < patch.count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    sum += static_cast<double>(patch.use[k] * shares.share[k]);
-  }
-  return sum;
 }
 
 }  // namespace nadir::tracker

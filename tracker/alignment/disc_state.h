@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "tracker/alignment/disc_fit.h"
+#include "tracker/alignment/disc_sums.h"
 #include "vision/marker_layout.h"
 
 namespace nadir::tracker {
@@ -31,8 +31,10 @@ class DiscState {
   /// A neighbour so near that its blurred edge reaches this disc's pixels; -1: none.
   std::array<int, 2> neighbours{-1, -1};
 
-  /// Finds levels by plain least squares for a centre.
+  /// Finds levels by plain least squares for a centre. After pixels were gathered.
   void start(const DiscEdge& edge, const Eigen::Vector2d& centre_m);
+  /// After pixels were gathered anew for a disc whose levels are known.
+  void start_anew(const DiscEdge& edge, const Eigen::Vector2d& centre_m);
   /// Shares of the pixels in the k-th neighbour's disc, with the neighbour's present contrast.
   void set_neighbour(int k, const DiscEdge& edge, const Eigen::Vector2d& centre_m,
                      const std::array<ChannelLevels, 3>& levels_of_neighbour);
@@ -54,12 +56,13 @@ class DiscState {
   /// Levels follow a step of the centre after the last evaluation.
   void follow(const Eigen::Vector2d& step_m);
 
-  const std::array<ChannelSums, 3>& sums() const { return sums_; }
-  const float* base(int channel) const;
-  /// Sum of the shares of pixels that count, without weights; values of one channel.
-  double pixels_in_disc() const;
+  ChannelModel model(int channel, const PixelNoise& noise, const OutlierLimits& limits) const;
+  /// Of the image: the shares of those that count, and those in the middle that are left out.
+  double pixels_in_disc() const { return share_sum_ + patch.skipped; }
 
  private:
+  Eigen::Vector2d shares_centre_m_ = Eigen::Vector2d::Zero();  // for which they were found last
+  double share_sum_ = 0.0;
   std::array<ChannelSums, 3> sums_;
   alignas(32) std::array<std::array<float, kPatchCapacity>, 3> base_;
   alignas(32) std::array<float, kPatchCapacity> neighbour_share_;

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "tracker/alignment/disc_patch.h"
+#include "tracker/alignment/patch_mask.h"
 #include "vision/marker_layout.h"
 
 namespace nadir::tracker {

@@ -8,7 +8,10 @@
 /// another form in each clone of NADIR_VECTOR_CLONES.
 namespace nadir::tracker::lanes {
 
-inline constexpr int kLanes = 8;
+#ifndef NADIR_LANES
+#define NADIR_LANES 8
+#endif
+inline constexpr int kLanes = NADIR_LANES;  ///< 1 in a plain build, for comparison
 // NOLINTBEGIN(modernize-use-using)
 typedef float Floats __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t Ints __attribute__((vector_size(4 * kLanes)));
@@ -20,16 +23,24 @@ NADIR_INLINE void load(const float* from, Floats& to) { std::memcpy(&to, from, s
 NADIR_INLINE void store(const Floats& from, float* to) { std::memcpy(to, &from, sizeof(from)); }
 
 NADIR_INLINE float sum_of(const Floats& values) {
+#if NADIR_LANES == 8
+  const Floats four = values + __builtin_shufflevector(values, values, 4, 5, 6, 7, 0, 1, 2, 3);
+  const Floats two = four + __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5);
+  return two[0] + two[1];
+#else
   float sum = 0.0F;
   for (int i = 0; i < kLanes; ++i) sum += values[i];
   return sum;
+#endif
 }
 
-/// 1 / sqrt(x) for x > 0 to 2e-7: a first guess from the number's bits, then Newton's steps.
+/// 1 / sqrt(x) for x > 0: a first guess from the number's bits, then Newton's steps. Three of them
+/// for 2e-7, two for 5e-6.
+template <int kSteps = 3>
 NADIR_INLINE void inverse_root(const Floats& x, Floats& root) {
   root = reinterpret_cast<Floats>(0x5f3759df - (reinterpret_cast<Ints>(x) >> 1));
   const Floats half = 0.5F * x;
-  for (int step = 0; step < 3; ++step) root = root * (1.5F - half * root * root);
+  for (int step = 0; step < kSteps; ++step) root = root * (1.5F - half * root * root);
 }
 
 /// exp(-x) for 0 <= x <= 80 to 3e-7, relative; smaller than e-80 counts as that.

@@ -17,6 +17,13 @@ Eigen::Vector2d LocalPlane::at(double du, double dv) const {
          bend * Eigen::Vector3d(du * du, du * dv, dv * dv);
 }
 
+Eigen::Vector2d LocalPlane::offset_of(const Eigen::Vector2d& place_m) const {
+  const Eigen::Matrix2d inverse = slope.inverse();
+  const Eigen::Vector2d first = inverse * (place_m - origin_m);
+  const Eigen::Vector2d second = first + inverse * (place_m - at(first.x(), first.y()));
+  return second + inverse * (place_m - at(second.x(), second.y()));
+}
+
 LocalPlane LocalPlane::moved(double du, double dv) const {
   LocalPlane result = *this;
   result.origin_m = at(du, dv);

@@ -17,6 +17,8 @@ struct LocalPlane {
   Eigen::Matrix<double, 2, 3> bend = Eigen::Matrix<double, 2, 3>::Zero();  ///< [xuu xuv xvv; ...]
 
   Eigen::Vector2d at(double du, double dv) const;
+  /// The offset at which a place is, 30 px away at most: to second order of the bend.
+  Eigen::Vector2d offset_of(const Eigen::Vector2d& place_m) const;
   /// The same plane, expanded about the pixel at that offset.
   LocalPlane moved(double du, double dv) const;
 };

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
-
-#include "tracker/alignment/disc_fit.h"
 #include "tracker/alignment/light_shape.h"
+#include "tracker/alignment/pixel_noise.h"
 
 namespace nadir::tracker {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "tracker/alignment/disc_fit.h"
+#include "tracker/alignment/pixel_noise.h"
 #include "tracker/alignment/tag_patch.h"
 #include "vision/tag_pattern.h"
 
