@@ -6,7 +6,7 @@
 
 #include "calibration/camera_place.h"
 #include "calibration/field_points.h"
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "calibration/plane_map.h"
 
 namespace nadir::calibration {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibration/field_points.h"
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 
 namespace nadir::calibration {
 

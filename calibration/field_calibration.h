@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "calibration/assessment.h"
 #include "calibration/calibration_file.h"
 #include "calibration/camera_place.h"
+#include "calibration/diagnosis/assessment.h"
 
 namespace nadir::calibration {
 

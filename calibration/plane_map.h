@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "calibration/convex_hull.h"
-#include "calibration/lack_of_fit.h"
+#include "calibration/diagnosis/lack_of_fit.h"
 #include "calibration/model_kind.h"
 #include "calibration/plane_shift.h"
 #include "calibration/polynomial_map.h"

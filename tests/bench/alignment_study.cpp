@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "tests/bench/cramer_rao.h"
 #include "tests/bench/thread_cpu_clock.h"
 #include "vision/synthetic/recording.h"

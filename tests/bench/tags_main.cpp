@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "tests/bench/bench_program.h"
 #include "tests/bench/json_file.h"
 #include "tests/bench/tag_bound.h"

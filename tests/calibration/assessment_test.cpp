@@ -1,4 +1,4 @@
-#include "calibration/assessment.h"
+#include "calibration/diagnosis/assessment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "calibration/field_points.h"
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "vision/synthetic/camera_model.h"
 
 namespace nadir::calibration {

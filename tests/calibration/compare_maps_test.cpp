@@ -1,13 +1,13 @@
 // Two calibrations of one camera whose difference is known.
 
-#include "calibration/compare_maps.h"
+#include "calibration/compare/compare_maps.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "calibration/compare_text.h"
+#include "calibration/compare/compare_text.h"
 #include "tests/calibration/synthetic_points.h"
 #include "tests/vision/input_error_line.h"
 

@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "vision/synthetic/camera_model.h"
 
 namespace nadir::calibration {

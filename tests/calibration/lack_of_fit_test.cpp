@@ -1,4 +1,4 @@
-#include "calibration/lack_of_fit.h"
+#include "calibration/diagnosis/lack_of_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "tests/calibration/synthetic_points.h"
 
 namespace nadir::calibration {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "calibration/cross_validation.h"
-#include "calibration/fit.h"
+#include "calibration/fit/cross_validation.h"
+#include "calibration/fit/fit.h"
 #include "tests/calibration/camera_points.h"
 #include "tests/calibration/synthetic_points.h"
 

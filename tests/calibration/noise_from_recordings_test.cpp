@@ -7,11 +7,11 @@
 #include <fstream>
 #include <random>
 
+#include "calibration/noise/noise_from_law.h"
+#include "calibration/noise/noise_from_log.h"
+#include "calibration/noise/noise_from_standing.h"
+#include "calibration/noise/noise_from_text.h"
 #include "calibration/noise_file.h"
-#include "calibration/noise_from_law.h"
-#include "calibration/noise_from_log.h"
-#include "calibration/noise_from_standing.h"
-#include "calibration/noise_from_text.h"
 #include "tests/vision/input_error_line.h"
 #include "tests/vision/scratch_folder.h"
 #include "vision/disc_measurement.h"

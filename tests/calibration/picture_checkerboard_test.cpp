@@ -1,6 +1,6 @@
 // Checkerboards drawn through a lens whose pixels are known.
 
-#include "calibration/picture_checkerboard.h"
+#include "calibration/program/picture_checkerboard.h"
 
 #include <gtest/gtest.h>
 

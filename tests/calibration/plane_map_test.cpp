@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "tests/calibration/synthetic_points.h"
 
 namespace nadir::calibration {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "calibration/calibration_file.h"
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "tests/calibration/camera_points.h"
 #include "tests/calibration/synthetic_points.h"
 #include "tests/vision/scratch_folder.h"

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "tests/calibration/synthetic_points.h"
 #include "tests/vision/input_error_line.h"
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "calibration/report_svg.h"
+#include "calibration/report/report_svg.h"
 #include "tests/calibration/synthetic_points.h"
 #include "tests/support/child_process.h"
 #include "tests/vision/scratch_folder.h"

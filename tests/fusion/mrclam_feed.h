@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "fusion/fuse_logs.h"
+#include "fusion/fuse/fuse_logs.h"
 
 namespace nadir::fusion {
 

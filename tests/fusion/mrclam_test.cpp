@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "fusion/fuse_run.h"
-#include "fusion/fuse_score.h"
+#include "fusion/fuse/fuse_run.h"
+#include "fusion/fuse/fuse_score.h"
 #include "fusion/time_offset_estimator.h"
 #include "tests/fusion/mrclam_feed.h"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "calibration/field_points.h"
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "fusion/planar_pose.h"
 #include "tracker/camera_pipeline.h"
 #include "vision/synthetic/recording.h"

@@ -77,9 +77,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Example{"vision/input/csv_table.h", "#include \"vision/frame.h\""},
                     Example{"vision/input/strict_yaml.cpp", "#include <opencv2/core.hpp>"},
                     Example{"vision/frame.h", "#include <dds/dds.h>"},
-                    Example{"calibration/fit.cpp", "#include \"fusion/planar_pose.h\""},
-                    Example{"calibration/fit.cpp", "#include \"tracker/pose_report.h\""},
-                    Example{"calibration/fit.cpp", "#include \"vision/disc_pattern_detector.h\""},
+                    Example{"calibration/fit/fit.cpp", "#include \"fusion/planar_pose.h\""},
+                    Example{"calibration/fit/fit.cpp", "#include \"tracker/pose_report.h\""},
+                    Example{"calibration/fit/fit.cpp",
+                            "#include \"vision/disc_pattern_detector.h\""},
                     Example{"fusion/gate.cpp", "#include \"tracker/wire/pose_reader.h\""},
                     Example{"fusion/gate.cpp", "#include \"vision/pixel.h\""},
                     Example{"fusion/gate.cpp", "#include \"vision/input/csv_table.h\""},
@@ -108,18 +109,19 @@ TEST_P(RightInclude, IsAllowed) {
 
 INSTANTIATE_TEST_SUITE_P(
     Examples, RightInclude,
-    testing::Values(
-        Example{"vision/frame.h", "#include <opencv2/core.hpp>"},
-        Example{"calibration/fit.cpp", "#include \"vision/pixel.h\""},
-        Example{"calibration/calibrate_main.cpp", "#include \"vision/disc_pattern_detector.h\""},
-        Example{"fusion/gate.cpp", "#include <Eigen/Cholesky>"},
-        Example{"fusion/fuse_main.cpp", "#include \"vision/input/csv_table.h\""},
-        Example{"tracker/pose_log.cpp", "#include \"calibration/plane_map.h\""},
-        Example{"tracker/pose_log.cpp", "#include \"fusion/planar_pose.h\""},
-        Example{"tracker/wire/pose_codec.cpp", "#include \"robot_pose.h\""},
-        Example{"tracker/wire/dds_entities.h", "#include <dds/dds.h>"},
-        Example{"control_client/client_main.cpp", "#include \"tracker/wire/pose_reader.h\""},
-        Example{"tests/tracker/wire_test.cpp", "#include <opencv2/core.hpp>"}));
+    testing::Values(Example{"vision/frame.h", "#include <opencv2/core.hpp>"},
+                    Example{"calibration/fit/fit.cpp", "#include \"vision/pixel.h\""},
+                    Example{"calibration/program/calibrate_main.cpp",
+                            "#include \"vision/disc_pattern_detector.h\""},
+                    Example{"fusion/gate.cpp", "#include <Eigen/Cholesky>"},
+                    Example{"fusion/fuse/fuse_main.cpp", "#include \"vision/input/csv_table.h\""},
+                    Example{"tracker/pose_log.cpp", "#include \"calibration/plane_map.h\""},
+                    Example{"tracker/pose_log.cpp", "#include \"fusion/planar_pose.h\""},
+                    Example{"tracker/wire/pose_codec.cpp", "#include \"robot_pose.h\""},
+                    Example{"tracker/wire/dds_entities.h", "#include <dds/dds.h>"},
+                    Example{"control_client/client_main.cpp",
+                            "#include \"tracker/wire/pose_reader.h\""},
+                    Example{"tests/tracker/wire_test.cpp", "#include <opencv2/core.hpp>"}));
 
 }  // namespace
 }  // namespace nadir::system_test

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "calibration/field_points.h"
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "fusion/planar_pose.h"
 #include "tracker/camera_pipeline.h"
 

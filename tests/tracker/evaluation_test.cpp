@@ -1,11 +1,11 @@
-#include "tracker/evaluation.h"
+#include "tracker/evaluation/evaluation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "tracker/error_statistics.h"
+#include "tracker/evaluation/error_statistics.h"
 
 namespace nadir::tracker {
 namespace {

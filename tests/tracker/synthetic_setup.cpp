@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "vision/synthetic/recording.h"
 #include "vision/synthetic/scene.h"
 

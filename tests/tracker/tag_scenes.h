@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/fit.h"
+#include "calibration/fit/fit.h"
 #include "calibration/plane_map.h"
 #include "tracker/tag_robots.h"
 #include "vision/synthetic/recording.h"

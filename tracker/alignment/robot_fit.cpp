@@ -173,7 +173,7 @@ bool RobotFit::step() {
 int RobotFit::drop_covered(const ExpectedLook& look) {
   const int before = counting_discs();
   std::array<double, vision::kMaxDiscs> amplitudes{};
-  std::array<double, vision::kMaxDiscs> falling{};
+  std::array<double, vision::kMaxDiscs> seen_amplitudes{};
   std::size_t count = 0;
   for (std::size_t i = 0; i < discs_.size(); ++i) {
     if (!counts_[i]) continue;
@@ -186,13 +186,13 @@ int RobotFit::drop_covered(const ExpectedLook& look) {
       continue;
     }
     amplitudes[i] = along / expected.squaredNorm();
-    falling[count++] = amplitudes[i];
+    seen_amplitudes[count++] = amplitudes[i];
   }
   if (count == 0) return before;
-  std::sort(falling.begin(), falling.begin() + static_cast<std::ptrdiff_t>(count),
-            std::greater<>{});
   // With an even number the larger one of the two in the middle: a faded pair is no measure.
-  const double median = falling[(count - 1) / 2];
+  const std::span<double> all(seen_amplitudes.data(), count);
+  std::ranges::nth_element(all, all.begin() + static_cast<std::ptrdiff_t>(count / 2));
+  const double median = all[count / 2];
   for (std::size_t i = 0; i < discs_.size(); ++i) {
     if (counts_[i] && amplitudes[i] < settings_.least_amplitude * median) counts_[i] = false;
   }
