@@ -33,8 +33,8 @@ void check_team_names(const std::vector<vision::MarkerLayout>& layouts) {
 PipelineSetup checked(PipelineSetup setup, int width_px, int height_px) {
   calibration::check_image_size(setup.calibration, setup.calibration_file, width_px, height_px);
   check_team_names(setup.layouts);
-  std::ranges::stable_partition(setup.layouts,
-                                [](const vision::MarkerLayout& layout) { return !layout.tags; });
+  std::stable_partition(setup.layouts.begin(), setup.layouts.end(),
+                        [](const vision::MarkerLayout& layout) { return !layout.tags; });
   return setup;
 }
 

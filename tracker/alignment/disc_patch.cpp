@@ -156,7 +156,7 @@ NADIR_INLINE void take_chord(const std::uint8_t* row, int row_bytes, const Chord
       bgr = tail.data();
     }
     take_run(bgr, rows, static_cast<float>(u - rows.u0), dv,
-             static_cast<std::size_t>(patch.count + first), patch);
+             static_cast<std::size_t>(patch.count) + static_cast<std::size_t>(first), patch);
   }
   patch.count += count;
 }
@@ -189,8 +189,8 @@ void gather_native(const cv::Mat& image, Mosaic mosaic, const Ring& ring, const 
     for (int v = rows.begin; v < rows.end; v += rows.step) {
       const int chord_count = ring.chords(v, image.cols, chords);
       const std::uint8_t* row = image.ptr<std::uint8_t>(v) + (channels == 3 ? c : 0);
-      const std::array<int, 2> of_row = {native[static_cast<std::size_t>(2 * (v & 1))],
-                                         native[static_cast<std::size_t>(2 * (v & 1) + 1)]};
+      const std::size_t first = (v & 1) != 0 ? 2 : 0;
+      const std::array<int, 2> of_row = {native[first], native[first + 1]};
       if (of_row[0] != c && of_row[1] != c) continue;
       const int parity = of_row[0] == c ? 0 : 1;
       const auto dv = static_cast<float>(v - rows.v0);
