@@ -14,6 +14,7 @@ enum class RandomPurpose : std::uint64_t {
   kSlip = 3,
   kPixelCounts = 4,
   kBurstLoss = 5,
+  kLandmarks = 6,
 };
 
 /// Random numbers that are the same on every machine (SplitMix64; Steele, Lea, Flood 2014).
