@@ -14,6 +14,7 @@
 #include "calibration/program/calibrate_commands.h"
 #include "calibration/program/calibrate_pictures.h"
 #include "vision/input/input_error.h"
+#include "vision/input/text_file.h"
 
 namespace nadir::calibration {
 namespace {
@@ -76,9 +77,10 @@ void run(const ColoursOptions& options) {
   const ColourStudy study = study_colours(found.samples);
   const vision::ColourClasses classes = classes_from(study);
   const RobotCounts counts{static_cast<int>(images.size()), found.robots, found.robots_by_default};
-  write_text(options.output, colours_yaml(study, classes, origin));
+  vision::write_text_file(options.output, colours_yaml(study, classes, origin));
   if (!options.picture.empty()) draw(options, images, layout, classes, found);
-  if (!options.json.empty()) write_text(options.json, colours_json(study, classes, counts));
+  if (!options.json.empty())
+    vision::write_text_file(options.json, colours_json(study, classes, counts));
   std::cerr << colours_summary(study, counts);
 }
 

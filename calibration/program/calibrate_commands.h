@@ -14,9 +14,6 @@ void add_noise_command(CLI::App& app);
 void add_colours_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 
-/// Writes a whole file; '-' is stdout. Throws InputError where the file cannot be written.
-void write_text(const std::string& file, const std::string& text);
-
 /// A number in a closed range; CLI11's own ranges let a NaN pass.
 CLI::Validator number_from_to(double low, double high);
 

@@ -8,6 +8,7 @@
 #include "calibration/compare/compare_maps.h"
 #include "calibration/compare/compare_text.h"
 #include "calibration/program/calibrate_commands.h"
+#include "vision/input/text_file.h"
 
 namespace nadir::calibration {
 namespace {
@@ -23,7 +24,7 @@ void run(const CompareOptions& options) {
   const Calibration a = load_calibration(options.first);
   const Calibration b = load_calibration(options.second);
   const MapComparison comparison = compare_maps(a, b, options.first, options.second);
-  if (!options.json.empty()) write_text(options.json, comparison_json(comparison));
+  if (!options.json.empty()) vision::write_text_file(options.json, comparison_json(comparison));
   std::ostream& out = options.json == "-" ? std::cerr : std::cout;
   out << comparison_summary(comparison) << std::flush;
   if (std::abs(a.height_m - b.height_m) > kSameHeight_m) {

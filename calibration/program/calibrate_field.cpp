@@ -17,6 +17,7 @@
 #include "calibration/report/report_numbers.h"
 #include "calibration/survey_file.h"
 #include "vision/input/input_error.h"
+#include "vision/input/text_file.h"
 
 namespace nadir::calibration {
 namespace {
@@ -119,9 +120,10 @@ void write_figures(const FieldOptions& options, const FieldPoints& points,
                    const FieldResult& result) {
   if (options.report.empty() && options.json.empty()) return;
   const ReportNumbers numbers = report_numbers(points, result);
-  if (!options.report.empty()) write_text(options.report, report_html(points, result, numbers));
+  if (!options.report.empty())
+    vision::write_text_file(options.report, report_html(points, result, numbers));
   if (!options.json.empty()) {
-    write_text(options.json, with_report_numbers(field_json(points, result), numbers));
+    vision::write_text_file(options.json, with_report_numbers(field_json(points, result), numbers));
   }
 }
 
@@ -140,7 +142,7 @@ void run(const FieldOptions& options) {
   }
   // Wrong points make no calibration; what was asked for besides shows what is wrong with them.
   const bool is_refused = result.assessment.grade == Grade::kFail && !options.force;
-  if (!is_refused) write_text(options.output, calibration_yaml(result.calibration));
+  if (!is_refused) vision::write_text_file(options.output, calibration_yaml(result.calibration));
   write_figures(options, points, result);
   std::cerr << field_summary(points, result);
   if (is_refused) {

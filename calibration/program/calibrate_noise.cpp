@@ -12,6 +12,7 @@
 #include "calibration/program/calibrate_commands.h"
 #include "vision/disc_measurement.h"
 #include "vision/input/input_error.h"
+#include "vision/input/text_file.h"
 
 namespace nadir::calibration {
 namespace {
@@ -44,8 +45,8 @@ void run(const NoiseOptions& options) {
   settings.table = options.kind == "table";
   const StandingData data = find_standing(tracks);
   const NoiseFit fit = fit_noise(data, settings, names(options.poses));
-  write_text(options.output, noise_yaml(fit, names(options.poses)));
-  if (!options.json.empty()) write_text(options.json, noise_json(data, fit));
+  vision::write_text_file(options.output, noise_yaml(fit, names(options.poses)));
+  if (!options.json.empty()) vision::write_text_file(options.json, noise_json(data, fit));
   std::cerr << noise_summary(data, fit);
 }
 

@@ -12,6 +12,7 @@
 #include "calibration/program/calibrate_picture_finders.h"
 #include "calibration/program/calibrate_pictures.h"
 #include "vision/input/input_error.h"
+#include "vision/input/text_file.h"
 
 namespace nadir::calibration {
 namespace {
@@ -123,7 +124,8 @@ SurveyedPictures points_from_pictures(const std::string& folder, const PictureOp
   found.points.points = find_points(pictures, options);
   int line = 2;  // behind the header
   for (FieldPoint& point : found.points.points) point.line = line++;
-  if (!options.save_points.empty()) write_text(options.save_points, points_csv(found.points));
+  if (!options.save_points.empty())
+    vision::write_text_file(options.save_points, points_csv(found.points));
   return found;
 }
 

@@ -9,6 +9,7 @@
 #include "calibration/program/calibrate_picture_points.h"
 #include "calibration/program/calibration_summary.h"
 #include "calibration/validation.h"
+#include "vision/input/text_file.h"
 
 namespace nadir::calibration {
 namespace {
@@ -26,7 +27,7 @@ void run(const ValidateOptions& options) {
                                  ? points_from_pictures(options.points, options.pictures).points
                                  : load_field_points(options.points);
   const Validation validation = validate(calibration, points);
-  write_text(options.json.empty() ? "-" : options.json, validation_json(validation));
+  vision::write_text_file(options.json.empty() ? "-" : options.json, validation_json(validation));
   std::cerr << validation_summary(validation);
 }
 

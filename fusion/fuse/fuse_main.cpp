@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -13,14 +12,11 @@
 #include "fusion/fuse/fuse_run.h"
 #include "fusion/fuse/fuse_score.h"
 #include "fusion/fuse/fuse_smooth.h"
-#include "vision/input/input_error.h"
+#include "vision/input/run_program.h"
+#include "vision/input/text_file.h"
 #include "vision/input/usage_line.h"
 
 namespace {
-
-using nadir::vision::InputError;
-
-enum ExitCode { kDone = 0, kFailed = 1, kWrongInput = 2 };
 
 struct Options {
   std::string odometry;
@@ -86,23 +82,11 @@ void check_usage(const Options& options) {
   }
 }
 
-/// '-' is stdout. Throws InputError where the file cannot be written.
-void write_text(const std::string& file, const std::string& text) {
-  if (file == "-") {
-    std::cout << text << std::flush;
-    if (!std::cout) throw std::runtime_error("stdout cannot be written");
-    return;
-  }
-  std::ofstream stream(file, std::ios::binary);
-  stream << text << std::flush;
-  if (!stream) throw InputError({file}, "cannot be written", "check the folder and its rights");
-}
-
 void run(const Options& options) {
   nadir::fusion::FuseConfig config;
   if (!options.config.empty()) config = nadir::fusion::load_fuse_config(options.config);
   if (options.print_config) {
-    write_text("-", fuse_config_yaml(config));
+    nadir::vision::write_text_file("-", fuse_config_yaml(config));
     return;
   }
   check_usage(options);
@@ -118,12 +102,13 @@ void run(const Options& options) {
   const auto result = nadir::fusion::fuse(logs, config, kind);
   std::optional<nadir::fusion::FuseScore> errors;
   if (truth) errors = score(result.estimates, *truth);
-  write_text(options.output, estimates_csv(result.estimates));
-  if (!options.json.empty()) write_text(options.json, summary_json(result, errors));
+  nadir::vision::write_text_file(options.output, estimates_csv(result.estimates));
+  if (!options.json.empty())
+    nadir::vision::write_text_file(options.json, summary_json(result, errors));
   std::cerr << summary_text(result, errors, options.poses);
   if (options.smooth.empty()) return;
   const auto smoothed = nadir::fusion::smooth(logs, config);
-  write_text(options.smooth, estimates_csv(smoothed));
+  nadir::vision::write_text_file(options.smooth, estimates_csv(smoothed));
   if (truth) std::cerr << "smoothed: " << score_text(score(smoothed, *truth));
 }
 
@@ -134,17 +119,5 @@ int main(int argc, char** argv) {
   CLI::App app("Fuses logs of odometry and late poses as the robot does, one estimate a row.",
                "nadir-fuse");
   describe_options(app, options);
-  try {
-    app.parse(argc, argv);
-    run(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kWrongInput;
-  } catch (const InputError& error) {
-    std::cerr << "nadir-fuse: " << error.what() << "\n";
-    return kWrongInput;
-  } catch (const std::exception& error) {
-    std::cerr << "nadir-fuse: " << error.what() << "\n";
-    return kFailed;
-  }
-  return kDone;
+  return nadir::vision::run_program(app, argc, argv, [&] { run(options); });
 }

@@ -2,21 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <optional>
 #include <string>
 
 #include "tracker/evaluation/evaluation.h"
 #include "tracker/evaluation/evaluation_logs.h"
 #include "tracker/evaluation/evaluation_text.h"
-#include "vision/input/input_error.h"
+#include "vision/input/run_program.h"
+#include "vision/input/text_file.h"
 #include "vision/input/usage_line.h"
 
 namespace {
-
-using nadir::vision::InputError;
-
-enum ExitCode { kDone = 0, kFailed = 1, kWrongInput = 2 };
 
 struct Options {
   std::string truth;
@@ -48,12 +44,6 @@ void describe_options(CLI::App& app, Options& options) {
                "the robots show no number: pair by place, count changes of track numbers");
 }
 
-void write_text(const std::string& file, const std::string& text) {
-  std::ofstream stream(file);
-  stream << text;
-  if (!stream.flush()) throw InputError({file}, "cannot be written", "is the folder there?");
-}
-
 void run(const Options& options) {
   const auto truth = nadir::tracker::read_truth(options.truth);
   const auto poses = nadir::tracker::read_poses(options.poses);
@@ -65,7 +55,7 @@ void run(const Options& options) {
   const auto stages = nadir::tracker::summarise_stages(poses);
   std::fputs(evaluation_table(evaluation, stages, reception).c_str(), stdout);
   if (!options.json.empty()) {
-    write_text(options.json, evaluation_json(evaluation, stages, reception));
+    nadir::vision::write_text_file(options.json, evaluation_json(evaluation, stages, reception));
   }
 }
 
@@ -76,17 +66,5 @@ int main(int argc, char** argv) {
   CLI::App app("Compares a tracker's poses with the truth: error, honesty, names, times.",
                "nadir-evaluate");
   describe_options(app, options);
-  try {
-    app.parse(argc, argv);
-    run(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kWrongInput;
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "nadir-evaluate: %s\n", error.what());
-    return kWrongInput;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "nadir-evaluate: %s\n", error.what());
-    return kFailed;
-  }
-  return kDone;
+  return nadir::vision::run_program(app, argc, argv, [&] { run(options); });
 }

@@ -3,7 +3,9 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 #include <iterator>
+#include <stdexcept>
 #include <system_error>
 
 #include "vision/input/input_error.h"
@@ -26,6 +28,19 @@ std::string read_text_file(const std::filesystem::path& file) {
   if (stream.bad()) throw InputError(place, "cannot be read to its end", "check the disk");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   return text;
+}
+
+void write_text_file(const std::filesystem::path& file, std::string_view text) {
+  if (file == "-") {
+    std::cout << text << std::flush;
+    if (!std::cout) throw std::runtime_error("stdout cannot be written");
+    return;
+  }
+  std::ofstream stream(file, std::ios::binary);
+  stream << text << std::flush;
+  if (!stream) {
+    throw InputError({file.string()}, "cannot be written", "check the folder and its rights");
+  }
 }
 
 }  // namespace nadir::vision
