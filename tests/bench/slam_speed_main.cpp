@@ -133,12 +133,13 @@ MapCost map_cost(int landmarks) {
 }
 
 nadir::bench::PlotSeries curve(const char* colour, const std::string& label,
-                               const std::vector<nadir::bench::PlotPoint>& points) {
+                               const std::vector<nadir::bench::PlotPoint>& points,
+                               double above = 1.25) {
   using Kind = nadir::bench::PlotSeries::Kind;
   return {Kind::kCurve,
           colour,
           points,
-          {{label, {points.back().x * 0.97, points.back().y * 1.25}, "end"}}};
+          {{label, {points.back().x * 0.97, points.back().y * above}, "end"}}};
 }
 
 std::string figure(const std::vector<ScanCost>& scans, const std::vector<MapCost>& maps) {
@@ -160,7 +161,8 @@ std::string figure(const std::vector<ScanCost>& scans, const std::vector<MapCost
         points.push_back({static_cast<double>(each.landmarks), each.named_us});
       }
     }
-    panel.series.push_back(curve(colours[i], fmt::format("{} in view", kInView[i]), points));
+    panel.series.push_back(curve(colours[i], fmt::format("{} in view", kInView[i]), points,
+                                 kInView[i] == 1 ? 0.45 : 1.25));
   }
   std::vector<nadir::bench::PlotPoint> steps;
   std::vector<nadir::bench::PlotPoint> dense;
