@@ -38,12 +38,14 @@ class Run {
     truth_at(feed_.truth, start_s, 0.35, &start);
     slam_.start(start, Eigen::Vector3d(1e-6, 1e-6, 1e-5).asDiagonal());
     now_s_ = start_s;
+    const auto& rows = feed_.odometry;
+    while (row_ + 1 < rows.size() && rows[row_ + 1].t_s <= now_s_) ++row_;
     auto sighting = recording_.sightings.cbegin();
     auto vision = feed_.vision.begin();
     double score_s = start_s + 1.0;
     while (sighting != recording_.sightings.end() && sighting->t_s < start_s) ++sighting;
     while (vision != feed_.vision.end() && vision->t_capture_s < start_s) ++vision;
-    while (score_s < protocol_.duration_s) {
+    while (score_s < protocol_.start_s + protocol_.duration_s) {
       const double sighting_s = sighting == recording_.sightings.end() ? 1e9 : sighting->t_s;
       const double vision_s = protocol_.vision_period_s > 0.0 && vision != feed_.vision.end()
                                   ? vision->t_capture_s
@@ -75,7 +77,7 @@ class Run {
   }
 
   double first_truth_s() const {
-    return std::max(feed_.odometry.front().t_s, feed_.truth.front().t_s) + 0.1;
+    return std::max(feed_.odometry.front().t_s, feed_.truth.front().t_s) + 0.1 + protocol_.start_s;
   }
 
   void predict_to(double t_s) {

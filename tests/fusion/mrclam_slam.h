@@ -40,6 +40,7 @@ inline constexpr double kMrclamCameraDelay_s = 0.05;
 using MrclamSlam = EkfSlam<BodyRateError, CameraSensorError>;
 
 struct MrclamSlamProtocol {
+  double start_s = 0.0;  ///< after the recording's start
   double duration_s = 300.0;
   bool knows_names = true;
   double vision_period_s = 0.0;  ///< 0: no poses from outside

@@ -46,6 +46,20 @@ TEST_P(RealMapping, APoseASecondHoldsTheMapInTheWorld) {
   EXPECT_LT(result.nees, 6.0);
 }
 
+TEST_P(RealMapping, OtherPartsOfTheRecordingAreMappedToo) {
+  for (const double start_s : {300.0, 590.0}) {
+    MrclamSlamProtocol protocol;
+    protocol.start_s = start_s;
+    const MrclamSlamResult known = run_mrclam_slam(GetParam(), protocol);
+    EXPECT_LT(known.landmark_rmse_m, 0.20) << start_s;
+    EXPECT_GT(known.nees, 1.0) << start_s;
+    EXPECT_LT(known.nees, 6.0) << start_s;
+    protocol.knows_names = false;
+    const MrclamSlamResult unknown = run_mrclam_slam(GetParam(), protocol);
+    EXPECT_LT(unknown.landmark_rmse_m, 1.7 * known.landmark_rmse_m) << start_s;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, RealMapping, testing::Values(1, 2));
 
 }  // namespace
