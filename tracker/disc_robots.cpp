@@ -13,6 +13,7 @@ namespace {
 
 // While nobody is missed, a newcomer is found within so many frames.
 constexpr int kSlices = 5;
+constexpr int kSliceOverlap = 40;  // the picture's height over it
 constexpr const char* kTooFewPixels = "a disc has too few pixels to be measured";
 
 std::vector<vision::MarkerLayout> disc_layouts(const PipelineSetup& setup) {
@@ -55,6 +56,7 @@ DiscRobots::DiscRobots(const PipelineSetup& setup, const std::vector<calibration
     eyes_.push_back({vision::DiscPatternDetector(setup.layouts[i], scale, setup.colours), {}});
   }
   followed_.set_mosaic(setup.mosaic);
+  bands_.reserve(257);
   known_.reserve(256);
   refined_.reserve(256);
   robots_.reserve(64);
@@ -65,23 +67,45 @@ void DiscRobots::detect(const vision::Frame& frame) {
   search(frame);
 }
 
-// All of the picture where a robot is missed or new, else a slice of it. Robots that were found
-// where they were expected are not looked for.
+// All of the picture where nothing is known of it. Else a slice of it for newcomers, and the places
+// of robots that were lost; only if one of those is not there, all of it.
 void DiscRobots::search(const vision::Frame& frame) {
-  vision::SearchArea area;
-  if (setup_.aligns() && !followed_.needs_full_search()) {
-    slice_ = (slice_ + 1) % kSlices;
-    area.row_begin_px = height_px_ * slice_ / kSlices;
-    area.row_end_px = height_px_ * (slice_ + 1) / kSlices;
-  }
+  if (!setup_.aligns() || followed_.needs_full_search()) return search_everywhere(frame);
+  search_parts(frame);
+  if (misses_someone()) search_everywhere(frame);
+}
+
+void DiscRobots::search_everywhere(const vision::Frame& frame) {
+  bands_.assign(1, vision::RowBand{});
+  for (std::size_t i = 0; i < eyes_.size(); ++i) look(i, frame);
+}
+
+// Slices reach back over their upper ends: who drives from the next one into the last one is seen.
+void DiscRobots::search_parts(const vision::Frame& frame) {
+  slice_ = (slice_ + 1) % kSlices;
+  const int begin_px = height_px_ * slice_ / kSlices - height_px_ / kSliceOverlap;
   for (std::size_t i = 0; i < eyes_.size(); ++i) {
-    known_.clear();
-    for (const FollowedRobot& robot : followed_.robots()) {
-      if (robot.found && robot.layout == i) known_.push_back(robot.aligned.centre_px);
-    }
-    area.known = known_;
-    eyes_[i].detector.detect(frame.image, area, eyes_[i].seen);
+    bands_.assign(1, {begin_px, height_px_ * (slice_ + 1) / kSlices});
+    followed_.append_regions(i, bands_);
+    look(i, frame);
   }
+}
+
+bool DiscRobots::misses_someone() {
+  bool someone = false;
+  for (std::size_t i = 0; i < eyes_.size(); ++i) {
+    someone = followed_.misses_someone(i, eyes_[i].seen.robots) || someone;
+  }
+  return someone;
+}
+
+// Robots that were found where they were expected are not looked for.
+void DiscRobots::look(std::size_t eye, const vision::Frame& frame) {
+  known_.clear();
+  for (const FollowedRobot& robot : followed_.robots()) {
+    if (robot.found && robot.layout == eye) known_.push_back(robot.aligned.centre_px);
+  }
+  eyes_[eye].detector.detect(frame.image, {.bands = bands_, .known = known_}, eyes_[eye].seen);
 }
 
 void DiscRobots::locate(const vision::Frame& frame, std::vector<RejectionReport>& rejected) {

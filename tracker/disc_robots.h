@@ -55,6 +55,10 @@ class DiscRobots {
   };
 
   void search(const vision::Frame& frame);
+  void search_parts(const vision::Frame& frame);
+  void search_everywhere(const vision::Frame& frame);
+  bool misses_someone();
+  void look(std::size_t eye, const vision::Frame& frame);
   void locate_followed(std::vector<RejectionReport>& rejected);
   void locate_detected(const vision::Frame& frame, std::vector<RejectionReport>& rejected);
   void refine(const vision::Frame& frame, DiscRobot& robot);
@@ -68,6 +72,7 @@ class DiscRobots {
   std::vector<Eye> eyes_;
   FollowedRobots followed_;
   int slice_ = 0;  // of the picture, to be searched next
+  std::vector<vision::RowBand> bands_;
   std::vector<vision::PixelPoint> known_;
   std::vector<AlignedPose> refined_;
   std::vector<DiscRobot> robots_;

@@ -11,8 +11,12 @@ namespace {
 constexpr int kSightingsToFollow = 3;
 constexpr int kSearchesAfterLoss = 2;
 constexpr double kLongestPrediction_s = 0.2;
-constexpr double kSameRobot_m = 0.05;           // between expected and detected place
-constexpr double kLookMemory = 0.95;            // per frame
+constexpr double kRemembered_s =
+    0.5;  // where a lost robot was: something may lie on it for a while
+constexpr double kFastest_mps = 4.0;
+constexpr double kMostStray_m = 0.3;   // looked for; a newcomer's search finds it elsewhere
+constexpr double kSameRobot_m = 0.05;  // between expected and detected place
+constexpr double kLookMemory = 0.95;   // per frame
 constexpr unsigned kFramesPerMosaicCheck = 64;  // a camera keeps its sensor
 constexpr double kKnownBlur_px = 0.005;
 constexpr unsigned kRobotsPerLesson = 4;
@@ -58,8 +62,8 @@ void FollowedRobots::look_for_mosaic(const cv::Mat& image) {
 }
 
 PoseGuess FollowedRobots::predict(const FollowedRobot& robot, vision::CaptureTime now) const {
-  const Eigen::Vector3d expected =
-      vector_of(robot.pose) + robot.rate * seconds(now - robot.last_seen);
+  const double ahead_s = std::min(seconds(now - robot.last_seen), kLongestPrediction_s);
+  const Eigen::Vector3d expected = vector_of(robot.pose) + robot.rate * ahead_s;
   return {{expected.x(), expected.y(), fusion::wrap_angle(expected.z())}, robot.aligned.centre_px};
 }
 
@@ -80,16 +84,49 @@ void FollowedRobots::follow(const vision::Frame& frame) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     FollowedRobot& robot = robots_[i];
     if (i + 1 < robots_.size()) fetch(frame.image, robots_[i + 1]);
-    if (robot.sightings < kSightingsToFollow) {
-      needs_full_search_ = true;
-      continue;
-    }
+    if (robot.sightings < kSightingsToFollow) continue;
     align(frame, robot);
-    if (robot.found) continue;
-    robot.sightings = 0;
-    needs_full_search_ = true;
-    full_searches_due_ = kSearchesAfterLoss - 1;
+    if (!robot.found) robot.sightings = 0;
   }
+}
+
+vision::PixelPoint FollowedRobots::expected_px(const FollowedRobot& robot) const {
+  const vision::PixelPoint& last_px = robot.aligned.centre_px;
+  return grids_[robot.layout]
+      ->pixel_near(predict(robot, last_frame_).pose_world_robot.position_m(), last_px)
+      .value_or(last_px);
+}
+
+double FollowedRobots::search_radius_px(const FollowedRobot& robot) const {
+  const double stray_m =
+      std::min(kMostStray_m, kSameRobot_m + kFastest_mps * seconds(last_frame_ - robot.last_seen));
+  return stray_m / grids_[robot.layout]->metres_per_pixel(robot.aligned.centre_px);
+}
+
+// Where the discs of a robot that was lost or is new may be.
+void FollowedRobots::append_regions(std::size_t layout, std::vector<vision::RowBand>& bands) const {
+  for (const FollowedRobot& robot : robots_) {
+    if (robot.found || robot.layout != layout) continue;
+    const double row_px = expected_px(robot).y();
+    const double half_px = search_radius_px(robot);
+    bands.push_back({static_cast<int>(row_px - half_px), static_cast<int>(row_px + half_px) + 1});
+  }
+}
+
+bool FollowedRobots::misses_someone(std::size_t layout,
+                                    std::span<const vision::RobotObservation> seen) {
+  const auto is_missed = [&](const FollowedRobot& robot) {
+    if (robot.found || robot.layout != layout || robot.missed > 0) return false;
+    const vision::PixelPoint expected = expected_px(robot);
+    const double radius_px = search_radius_px(robot);
+    return std::ranges::none_of(seen, [&](const vision::RobotObservation& one) {
+      return one.team == robot.team && one.identity == robot.identity &&
+             (one.discs[0].centre_px - expected).norm() < 2.0 * radius_px;
+    });
+  };
+  if (std::ranges::none_of(robots_, is_missed)) return false;
+  full_searches_due_ = kSearchesAfterLoss - 1;
+  return true;
 }
 
 // Asks memory for the pixels of the robot that is next, before they are needed.
@@ -114,7 +151,7 @@ void FollowedRobots::list_obstacles(std::size_t layout, const Eigen::Vector2d& e
   obstacles_.clear();
   const double radius_m = aligners_[layout].robot().plate.radius_m;
   for (const FollowedRobot& other : robots_) {
-    if (other.layout != layout) continue;
+    if (other.layout != layout || other.missed > 0) continue;
     const Eigen::Vector2d place_m = other.found
                                         ? other.aligned.pose_world_robot.position_m()
                                         : predict(other, last_frame_).pose_world_robot.position_m();
@@ -207,11 +244,20 @@ void FollowedRobots::remember_detected(std::size_t layout,
            (predict(robot, now).pose_world_robot.position_m() - pose.position_m()).norm() <
                kSameRobot_m;
   };
+  // One that was carried away, and is here now.
+  const auto same_name = [&](const FollowedRobot& robot) {
+    return !robot.continued && robot.layout == layout && robot.team == observation.team &&
+           robot.identity == observation.identity && robot.identity >= 0;
+  };
   auto found = std::ranges::find_if(robots_, same);
   if (found == robots_.end()) {
-    if (robots_.size() == robots_.capacity()) return;
-    robots_.emplace_back();
-    found = robots_.end() - 1;
+    found = std::ranges::find_if(robots_, same_name);
+    if (found == robots_.end()) {
+      if (robots_.size() == robots_.capacity()) return;
+      robots_.emplace_back();
+      found = robots_.end() - 1;
+    }
+    *found = {};
     found->layout = layout;
     found->team = observation.team;
     found->identity = observation.identity;
@@ -237,7 +283,13 @@ void FollowedRobots::remember_detected(std::size_t layout,
 }
 
 void FollowedRobots::end_frame() {
-  std::erase_if(robots_, [](const FollowedRobot& robot) { return !robot.continued; });
+  std::erase_if(robots_, [this](const FollowedRobot& robot) {
+    return seconds(last_frame_ - robot.last_seen) > kRemembered_s;
+  });
+  for (FollowedRobot& robot : robots_) {
+    robot.missed = robot.continued ? 0 : robot.missed + 1;
+    if (!robot.continued) robot.sightings = 0;
+  }
 }
 
 }  // namespace nadir::tracker

@@ -12,6 +12,7 @@
 #include "vision/frame.h"
 #include "vision/marker_layout.h"
 #include "vision/marker_observation.h"
+#include "vision/sparse_search.h"
 
 namespace nadir::tracker {
 
@@ -24,6 +25,7 @@ struct FollowedRobot {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< of x, y, heading; per second
   vision::CaptureTime last_seen{};
   int sightings = 0;  ///< in a row, read the same way
+  int missed = 0;     ///< frames since then
   ExpectedLook look;
   AlignedPose aligned;                   ///< in this frame, if `found`
   vision::RobotObservation observation;  ///< the same in the detector's words
@@ -33,7 +35,8 @@ struct FollowedRobot {
 
 /// The robots of one camera that are followed from frame to frame without being detected again:
 /// predict, align, verify. Only what the detector read the same way three times in a row is
-/// followed; whoever does not look as before is let go and must be detected again.
+/// followed; whoever does not look as before must be detected again, and for half a second is
+/// looked for where it was.
 class FollowedRobots {
  public:
   /// `maps`: of the planes of the layouts' marks.
@@ -49,9 +52,15 @@ class FollowedRobots {
   void follow(const vision::Frame& frame);
   /// Robots; those with `found` were aligned with this frame.
   std::span<const FollowedRobot> robots() const { return robots_; }
-  /// True if a robot was lost in this frame or the one before, or is too new to be followed: then
-  /// all of the frame must be searched.
+  /// True where nothing is known of the frame, or a robot was missed in the one before: then all of
+  /// it must be searched.
   bool needs_full_search() const { return needs_full_search_; }
+  /// Appends the rows in which the detector is to look for robots of a layout that were lost or are
+  /// too new to be followed.
+  void append_regions(std::size_t layout, std::vector<vision::RowBand>& bands) const;
+  /// True if a robot that was there in the frame before is neither aligned nor among those that the
+  /// detector saw where it was looked for: it may be anywhere.
+  bool misses_someone(std::size_t layout, std::span<const vision::RobotObservation> seen);
 
   /// Aligns a robot that was detected in this frame at a pose. False where alignment does not agree
   /// with the detector: then what the detector measured is all that is known.
@@ -64,13 +73,15 @@ class FollowedRobots {
   void remember_detected(std::size_t layout, const vision::RobotObservation& observation,
                          const fusion::PlanarPose& pose, const AlignedPose* aligned,
                          vision::CaptureTime now);
-  /// After all were remembered: lets go of those that were not.
+  /// After all were remembered: lets go of those that have not been seen for long.
   void end_frame();
 
   const SensorModel& sensor() const { return sensor_; }
 
  private:
   void look_for_mosaic(const cv::Mat& image);
+  vision::PixelPoint expected_px(const FollowedRobot& robot) const;
+  double search_radius_px(const FollowedRobot& robot) const;
   PoseGuess predict(const FollowedRobot& robot, vision::CaptureTime now) const;
   void fetch(const cv::Mat& image, const FollowedRobot& robot) const;
   void align(const vision::Frame& frame, FollowedRobot& robot);

@@ -229,7 +229,8 @@ DiscPatternDetector::DiscPatternDetector(DiscPatternDetector&&) noexcept = defau
 DiscPatternDetector& DiscPatternDetector::operator=(DiscPatternDetector&&) noexcept = default;
 
 void DiscPatternDetector::detect(const cv::Mat& bgr, DetectionResult& result) {
-  detect(bgr, {}, result);
+  constexpr RowBand kEverything;
+  detect(bgr, {.bands = std::span(&kEverything, 1)}, result);
 }
 
 void DiscPatternDetector::detect(const cv::Mat& bgr, const SearchArea& area,
@@ -247,7 +248,7 @@ void DiscPatternDetector::detect(const cv::Mat& bgr, const SearchArea& area,
     state.sampling_variance_px2 =
         looks_demosaiced(bgr) ? kDemosaicedSamplingVariance_px2 : kSamplingVariance_px2;
   }
-  state.search.scan(bgr, area.row_begin_px, std::min(area.row_end_px, bgr.rows));
+  state.search.scan(bgr, area.bands);
   for (const PixelPoint& place : area.known) state.mark_robot(place);
   state.search.for_each_seed([&](const Seed& seed, const PixelPoint& next) {
     state.fetch_robot(bgr, next);

@@ -8,13 +8,13 @@
 #include "vision/marker_layout.h"
 #include "vision/marker_observation.h"
 #include "vision/pixel_scale_grid.h"
+#include "vision/sparse_search.h"
 
 namespace nadir::vision {
 
 /// A part of the picture to be searched, less what is known to be there.
 struct SearchArea {
-  int row_begin_px = 0;
-  int row_end_px = 1 << 30;             ///< not included
+  std::span<const RowBand> bands{};     ///< of the picture's rows, in any order
   std::span<const PixelPoint> known{};  ///< robots' origins: nothing is looked for on them
 };
 

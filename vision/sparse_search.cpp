@@ -32,7 +32,7 @@ constexpr int kCellsAtOnce = 8;
 // goes on in two directions.
 constexpr int kMostAlikeNeighbours = 1;
 constexpr std::size_t kCacheLineBytes = 64;
-constexpr int kRowsAhead = 2;
+constexpr std::size_t kRowsAhead = 2;
 constexpr std::size_t kPointsAtOnce = 16;
 
 std::array<std::int16_t, 3> fixed_point(const Bgr& coefficients) {
@@ -88,6 +88,7 @@ SparseSearch::SparseSearch(int width_px, int height_px, Steps steps, double larg
                   static_cast<std::size_t>(v_.count + 2 * v_.margin)),
       scores_(plane_size_ * colours.size(), kNothing),
       best_of_row_(static_cast<std::size_t>(v_.count) * colours.size(), kNothing),
+      is_listed_(static_cast<std::size_t>(v_.count), 0),
       words_(static_cast<std::size_t>(u_.padded_count)),
       blue_(words_.size()),
       green_(words_.size()),
@@ -99,6 +100,7 @@ SparseSearch::SparseSearch(int width_px, int height_px, Steps steps, double larg
   surroundings_ = {
       -u_.margin,        u_.margin,        -up, up, -up_aslant - aside, -up_aslant + aside,
       up_aslant - aside, up_aslant + aside};
+  rows_to_read_.reserve(is_listed_.size());
   cells_.reserve(static_cast<std::size_t>(u_.count) * static_cast<std::size_t>(v_.count) *
                  colours.size());
   for (const ColourScore& colour : colours) {
@@ -108,23 +110,49 @@ SparseSearch::SparseSearch(int width_px, int height_px, Steps steps, double larg
   }
 }
 
-void SparseSearch::scan(const cv::Mat& bgr) { scan(bgr, 0, bgr.rows); }
+void SparseSearch::scan(const cv::Mat& bgr) {
+  constexpr RowBand kEverything;
+  scan(bgr, std::span(&kEverything, 1));
+}
 
-// Rows of the surroundings are read too, so that a seed can be judged, but are not listed.
-void SparseSearch::scan(const cv::Mat& bgr, int row_begin_px, int row_end_px) {
-  const int begin = std::clamp(static_cast<int>(std::ceil(v_.index(row_begin_px))), 0, v_.count);
-  const int end = std::clamp(static_cast<int>(std::ceil(v_.index(row_end_px))), begin, v_.count);
-  const int read_end = std::min(v_.count, end + v_.margin);
-  for (int row = std::max(0, begin - v_.margin); row < read_end; ++row) {
-    const int to_come = std::min(row + kRowsAhead, read_end - 1);
+void SparseSearch::scan(const cv::Mat& bgr, std::span<const RowBand> bands) {
+  choose_rows(bands);
+  for (std::size_t i = 0; i < rows_to_read_.size(); ++i) {
+    const int row = rows_to_read_[i];
+    const int to_come = rows_to_read_[std::min(i + kRowsAhead, rows_to_read_.size() - 1)];
     gather_row(bgr.ptr<std::uint8_t>(v_.first_px + row * v_.step_px),
                bgr.ptr<std::uint8_t>(v_.first_px + to_come * v_.step_px));
     score_row(row);
   }
   for (int colour = 0; colour < static_cast<int>(colours_.size()); ++colour) {
-    std::int16_t* const best = &best_of_row_[row_index(colour, 0)];
-    std::fill(best, best + begin, kNothing);
-    std::fill(best + end, best + v_.count, kNothing);
+    for (int row = 0; row < v_.count; ++row) {
+      if (is_listed_[static_cast<std::size_t>(row)] == 0) {
+        best_of_row_[row_index(colour, row)] = kNothing;
+      }
+    }
+  }
+}
+
+// Rows of the surroundings are read too, so that a seed can be judged, but are not listed.
+void SparseSearch::choose_rows(std::span<const RowBand> bands) {
+  constexpr char kRead = 1;
+  constexpr char kListed = 2;
+  std::ranges::fill(is_listed_, char{0});
+  for (const RowBand& band : bands) {
+    const int begin = std::clamp(static_cast<int>(std::ceil(v_.index(band.begin_px))), 0, v_.count);
+    const int end = std::clamp(static_cast<int>(std::ceil(v_.index(band.end_px))), begin, v_.count);
+    if (begin == end) continue;
+    for (int row = std::max(0, begin - v_.margin); row < std::min(v_.count, end + v_.margin);
+         ++row) {
+      char& use = is_listed_[static_cast<std::size_t>(row)];
+      use = std::max(use, row >= begin && row < end ? kListed : kRead);
+    }
+  }
+  rows_to_read_.clear();
+  for (int row = 0; row < v_.count; ++row) {
+    char& use = is_listed_[static_cast<std::size_t>(row)];
+    if (use != 0) rows_to_read_.push_back(row);
+    use = use == kListed ? 1 : 0;
   }
 }
 

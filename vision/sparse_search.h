@@ -3,12 +3,19 @@
 #include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <span>
 #include <vector>
 
 #include "vision/colour_classes.h"
 #include "vision/pixel.h"
 
 namespace nadir::vision {
+
+/// Rows of an image, the last not included.
+struct RowBand {
+  int begin_px = 0;
+  int end_px = 1 << 30;
+};
 
 /// A place where a disc of a wanted colour may be.
 struct Seed {
@@ -28,8 +35,8 @@ class SparseSearch {
 
   /// Reads the grid of a CV_8UC3 image of the size given at construction.
   void scan(const cv::Mat& bgr);
-  /// Only between two rows of the image, the second not included: other places are no seeds.
-  void scan(const cv::Mat& bgr, int row_begin_px, int row_end_px);
+  /// Only some rows of the image, in any order: other places are no seeds.
+  void scan(const cv::Mat& bgr, std::span<const RowBand> bands);
 
   /// Calls visit(seed, next) for every grid point that may lie in a disc and is not marked. `next`
   /// is about where the next thing will be looked at: time to have its pixels fetched.
@@ -80,6 +87,7 @@ class SparseSearch {
   static Steps steps_for(double smallest_radius_px);
   SparseSearch(int width_px, int height_px, Steps steps, double largest_radius_px,
                const std::vector<ColourScore>& colours);
+  void choose_rows(std::span<const RowBand> bands);
   void gather_row(const std::uint8_t* row_bgr, const std::uint8_t* row_to_come);
   void score_row(int row);
   void list_cells();
@@ -106,6 +114,8 @@ class SparseSearch {
   std::vector<FixedPointScore> colours_;
   std::vector<std::int16_t> scores_;       ///< one padded plane per colour
   std::vector<std::int16_t> best_of_row_;  ///< largest score of each row of each plane
+  std::vector<char> is_listed_;            ///< of each row: its cells may be seeds
+  std::vector<int> rows_to_read_;          ///< those, and the rows of their surroundings
   std::vector<Cell> cells_;                ///< that may lie in a disc, row by row
   std::vector<std::int32_t> words_;        ///< the present row's grid points
   std::vector<std::int16_t> blue_;

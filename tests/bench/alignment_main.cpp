@@ -106,30 +106,44 @@ nlohmann::json run_speed() {
   return cases;
 }
 
-// Who stays whom: 5000 robots in frames for each story.
+// Who stays whom: about 3000 robots in frames for each story.
 nlohmann::json run_following() {
   using nadir::support::FollowingStory;
   const std::vector<std::pair<const char*, FollowingStory>> stories = {
-      {"touching", {.frames = 420}},
-      {"one covered", {.frames = 420, .covers_one_disc = true}},
-      {"two covered", {.frames = 420, .covers_two_discs = true}},
-      {"clutter, carried", {.frames = 420, .balls = true, .swaps = true}}};
+      {"touching", {.frames = 250}},
+      {"crossing", {.frames = 250, .crossing = true}},
+      {"crossing, 3 m/s", {.frames = 250, .speed_mps = 3.0, .balls = true, .crossing = true}},
+      {"one covered", {.frames = 250, .covers_one_disc = true, .balls = true}},
+      {"two covered", {.frames = 250, .covers_two_discs = true}},
+      {"clutter, carried", {.frames = 250, .balls = true, .swaps = true}},
+      {"taken away", {.frames = 250, .balls = true, .lifts = true}},
+      {"all of it",
+       {.frames = 250,
+        .covers_one_disc = true,
+        .covers_two_discs = true,
+        .balls = true,
+        .swaps = true,
+        .lifts = true,
+        .crossing = true}}};
   const std::filesystem::path folder = std::filesystem::path(NADIR_DATA_DIR) / "scenes";
-  fmt::print("{:<18} {:>7} {:>9} {:>7} {:>6} {:>9} {:>14} {:>7}\n", "followed", "robots",
-             "uncovered", "missed", "wrong", "phantoms", "covered, found", "rms_px");
+  fmt::print("{:<18} {:>7} {:>9} {:>7} {:>6} {:>9} {:>14} {:>9} {:>5} {:>7}\n", "followed",
+             "robots", "uncovered", "missed", "wrong", "phantoms", "covered, found", "newcomer",
+             "lost", "rms_px");
   nlohmann::json cases = nlohmann::json::array();
   for (const auto& [name, story] : stories) {
     const nadir::support::FollowingStudy study = nadir::support::study_following(
         nadir::vision::load_scene(folder / "league_even.yaml"), story, 17);
-    fmt::print("{:<18} {:>7} {:>9} {:>7} {:>6} {:>9} {:>14} {:>7.4f}\n", name, study.robot_frames,
-               study.uncovered, study.missed, study.wrong_ids, study.phantoms, study.covered_found,
-               study.rms_px);
+    fmt::print("{:<18} {:>7} {:>9} {:>7} {:>6} {:>9} {:>14} {:>9} {:>5} {:>7.4f}\n", name,
+               study.robot_frames, study.uncovered, study.missed, study.wrong_ids, study.phantoms,
+               study.covered_found, study.slowest_newcomer, study.longest_loss, study.rms_px);
     std::fflush(stdout);
     cases.push_back({{"story", name},
                      {"robots", study.robot_frames},
                      {"missed", study.missed},
                      {"wrong_ids", study.wrong_ids},
-                     {"phantoms", study.phantoms}});
+                     {"phantoms", study.phantoms},
+                     {"frames_to_newcomer", study.slowest_newcomer},
+                     {"frames_lost", study.longest_loss}});
   }
   return cases;
 }

@@ -13,7 +13,11 @@ namespace {
 
 constexpr int kRobots = 12;
 constexpr double kTouching_m = 0.181;  // between the centres of two robots of 90 mm radius
+constexpr double kFirstLane_m = -1.9;
+constexpr double kLane_m = 0.76;
+constexpr double kHalfWay_m = 2.2;
 constexpr double kCoverTime_s = 0.4;
+constexpr double kLiftTime_s = 0.7;
 constexpr double kMatch_px = 12.0;
 
 vision::Scene empty(vision::Scene scene) {
@@ -47,12 +51,17 @@ class Story {
             .source = story_.source};
   }
   std::vector<vision::RobotPlacement> robots_at(int frame) const;
+  vision::RobotMotion pair_motion(int slot, double time_s) const;
+  vision::RobotMotion crossing_motion(int slot, double time_s) const;
+  int who_is_at(int slot, double time_s) const;
   Cover cover_of(int robot, int frame) const;
+  bool is_there(int robot, int frame) const;
   void paint(int frame, const std::vector<vision::RobotPlacement>& robots, cv::Mat& image) const;
   void paint_disc(const vision::RobotPlacement& robot, int disc, std::uint64_t colour,
                   cv::Mat& image) const;
   void judge(int frame, const std::vector<vision::RobotPlacement>& robots,
              const tracker::FrameReport& report);
+  void count(int robot, int frame, bool seen);
   vision::PixelPoint pixel(const Eigen::Vector2d& place_m) const {
     return renderer_.camera().project({place_m.x(), place_m.y(), scene_.layouts[0].height_m});
   }
@@ -63,38 +72,71 @@ class Story {
   vision::Renderer renderer_;
   tracker::CameraPipeline pipeline_;
   FollowingStudy study_;
+  std::vector<int> unseen_ = std::vector<int>(kRobots, 0);  // frames in sight since last seen
+  std::vector<bool> is_new_ = std::vector<bool>(kRobots, true);
   double squares_px2_ = 0.0;
   std::uint64_t matched_ = 0;
 };
 
-// Pair k drives to and fro on a line of its own and turns; lines cross in the middle of the field
-// at different times.
+// Pair k drives to and fro on a lane of its own and turns.
+vision::RobotMotion Story::pair_motion(int slot, double time_s) const {
+  const int pair = slot / 2;
+  const double lane_m = kFirstLane_m + kLane_m * pair;
+  const double way_m = story_.speed_mps * time_s + 0.9 * pair;
+  const double x_m = kHalfWay_m * std::sin(way_m / kHalfWay_m);
+  const double turn_rad = (pair % 2 == 0 ? 1.0 : -1.0) * (2.0 * time_s + pair);
+  const double side = slot % 2 == 0 ? 0.5 : -0.5;
+  vision::RobotMotion motion;
+  motion.x_m = x_m + side * kTouching_m * std::cos(turn_rad);
+  motion.y_m = lane_m + side * kTouching_m * std::sin(turn_rad);
+  motion.heading_rad = fusion::wrap_angle(1.5 * turn_rad + slot);
+  return motion;
+}
+
+// Half of them drive along x and half along y; where ways cross one has just gone when the other
+// comes: they pass 0.19 m from each other.
+vision::RobotMotion Story::crossing_motion(int slot, double time_s) const {
+  constexpr double kAhead_m = 0.27;
+  const double lane_m = kFirstLane_m + kLane_m * (slot / 2);
+  const double way_m = kHalfWay_m * std::sin(story_.speed_mps * time_s / kHalfWay_m);
+  vision::RobotMotion motion;
+  motion.x_m = slot % 2 == 0 ? way_m + kAhead_m : lane_m;
+  motion.y_m = slot % 2 == 0 ? lane_m : way_m;
+  motion.heading_rad = fusion::wrap_angle(2.0 * time_s + slot);
+  return motion;
+}
+
+// Every second two robots have been carried to each other's places.
+int Story::who_is_at(int slot, double time_s) const {
+  const int swaps = story_.swaps ? static_cast<int>(time_s) : 0;
+  int who = slot;
+  for (int swap = 0; swap < swaps; ++swap) {
+    const int a = (5 * swap) % kRobots;
+    const int b = (5 * swap + 7) % kRobots;
+    who = who == a ? b : who == b ? a : who;
+  }
+  return who;
+}
+
 std::vector<vision::RobotPlacement> Story::robots_at(int frame) const {
   const double time_s = frame / scene_.rate_hz;
   std::vector<vision::RobotPlacement> robots(kRobots);
-  // Every second two robots have been carried to each other's places.
-  const int swaps = story_.swaps ? static_cast<int>(time_s) : 0;
   for (int slot = 0; slot < kRobots; ++slot) {
-    const int pair = slot / 2;
-    const double lane_m = -1.9 + 0.76 * pair;
-    const double way_m = story_.speed_mps * time_s + 0.9 * pair;
-    const double x_m = 2.2 * std::sin(way_m / 2.2);
-    const double turn_rad = (pair % 2 == 0 ? 1.0 : -1.0) * (2.0 * time_s + pair);
-    const double side = slot % 2 == 0 ? 0.5 : -0.5;
-    int who = slot;
-    for (int swap = 0; swap < swaps; ++swap) {
-      const int a = (5 * swap) % kRobots;
-      const int b = (5 * swap + 7) % kRobots;
-      who = who == a ? b : who == b ? a : who;
-    }
     vision::RobotPlacement& robot = robots[static_cast<std::size_t>(slot)];
-    robot.team = static_cast<std::size_t>(who % 2);
-    robot.id = who;
-    robot.motion.x_m = x_m + side * kTouching_m * std::cos(turn_rad);
-    robot.motion.y_m = lane_m + side * kTouching_m * std::sin(turn_rad);
-    robot.motion.heading_rad = fusion::wrap_angle(1.5 * turn_rad + slot);
+    robot.id = who_is_at(slot, time_s);
+    robot.team = static_cast<std::size_t>(robot.id % 2);
+    robot.motion = story_.crossing ? crossing_motion(slot, time_s) : pair_motion(slot, time_s);
   }
   return robots;
+}
+
+// The robot of a slot is away for some of its times; the slot has moved on when it comes back.
+bool Story::is_there(int robot, int frame) const {
+  if (!story_.lifts) return true;
+  const int period = static_cast<int>(kLiftTime_s * scene_.rate_hz);
+  vision::RandomStream random(seed_, static_cast<std::uint64_t>((frame + 5 * robot) / period),
+                              200 + static_cast<std::uint64_t>(robot));
+  return random.uniform() > 0.3;
 }
 
 Story::Cover Story::cover_of(int robot, int frame) const {
@@ -130,6 +172,7 @@ void Story::paint(int frame, const std::vector<vision::RobotPlacement>& robots,
                   cv::Mat& image) const {
   for (int i = 0; i < kRobots; ++i) {
     const auto& robot = robots[static_cast<std::size_t>(i)];
+    if (!is_there(i, frame)) continue;
     for (const int disc : cover_of(i, frame).discs) {
       // Things have another colour than what they cover: orange, black.
       paint_disc(robot, disc, static_cast<std::uint64_t>(disc + i) % 2, image);
@@ -162,7 +205,7 @@ void Story::judge(int frame, const std::vector<vision::RobotPlacement>& robots,
     for (std::size_t i = 0; i < robots.size(); ++i) {
       const double apart_px =
           (reported.centre_px - pixel({robots[i].motion.x_m, robots[i].motion.y_m})).norm();
-      if (apart_px < nearest_px) {
+      if (apart_px < nearest_px && is_there(static_cast<int>(i), frame)) {
         nearest = i;
         nearest_px = apart_px;
       }
@@ -182,11 +225,28 @@ void Story::judge(int frame, const std::vector<vision::RobotPlacement>& robots,
     study_.worst_error_px = std::max(study_.worst_error_px, nearest_px);
     if (!cover_of(static_cast<int>(nearest), frame).discs.empty()) ++study_.covered_found;
   }
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    ++study_.robot_frames;
-    if (!cover_of(static_cast<int>(i), frame).discs.empty()) continue;
-    ++study_.uncovered;
-    if (!seen[i]) ++study_.missed;
+  for (int i = 0; i < kRobots; ++i) count(i, frame, seen[static_cast<std::size_t>(i)]);
+}
+
+void Story::count(int robot, int frame, bool seen) {
+  const auto i = static_cast<std::size_t>(robot);
+  const bool there = is_there(robot, frame);
+  study_.robot_frames += there ? 1 : 0;
+  if (!there) is_new_[i] = true;
+  if (seen || !there || !cover_of(robot, frame).discs.empty()) {
+    unseen_[i] = 0;
+  } else {
+    ++unseen_[i];
+  }
+  if (!there || !cover_of(robot, frame).discs.empty()) return;
+  ++study_.uncovered;
+  if (seen) {
+    is_new_[i] = false;
+  } else if (is_new_[i]) {
+    study_.slowest_newcomer = std::max(study_.slowest_newcomer, unseen_[i] + 1);
+  } else {
+    ++study_.missed;
+    study_.longest_loss = std::max(study_.longest_loss, unseen_[i]);
   }
 }
 
@@ -196,9 +256,13 @@ FollowingStudy Story::run() {
   std::vector<double> times_us;
   for (int i = 0; i < story_.frames; ++i) {
     const std::vector<vision::RobotPlacement> robots = robots_at(i);
+    std::vector<vision::RobotPlacement> there;
+    for (int slot = 0; slot < kRobots; ++slot) {
+      if (is_there(slot, i)) there.push_back(robots[static_cast<std::size_t>(slot)]);
+    }
     frame.number = static_cast<std::uint64_t>(i);
     frame.capture_time = renderer_.capture_time(frame.number);
-    renderer_.render_robots(frame.number, robots, frame.image);
+    renderer_.render_robots(frame.number, there, frame.image);
     paint(i, robots, frame.image);
     pipeline_.process(frame, 0.0, report);
     times_us.push_back(report.stages.total_us);

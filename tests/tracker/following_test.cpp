@@ -57,5 +57,26 @@ TEST(Following, ClutterAndRobotsCarriedAwayGiveNobodyAWrongName) {
   EXPECT_LE(static_cast<double>(result.missed), 0.005 * static_cast<double>(result.uncovered));
 }
 
+TEST(Following, NewcomersAreReportedWithinFiveFramesAndLostRobotsWithinTwo) {
+  const FollowingStudy put_down = study({.frames = 130, .lifts = true});
+  EXPECT_EQ(put_down.wrong_ids, 0U);
+  EXPECT_EQ(put_down.phantoms, 0U);
+  EXPECT_GT(put_down.slowest_newcomer, 1);  // they are searched for in slices
+  EXPECT_LE(put_down.slowest_newcomer, 5);
+  EXPECT_EQ(put_down.longest_loss, 0);
+  // Two covered discs lose a robot; once they can be seen it is found where it was.
+  const FollowingStudy lost = study({.frames = 130, .covers_two_discs = true, .swaps = true});
+  EXPECT_LE(lost.longest_loss, 2);
+  EXPECT_EQ(lost.wrong_ids, 0U);
+}
+
+TEST(Following, RobotsThatCrossCloselyStayThemselves) {
+  const FollowingStudy result =
+      study({.frames = 90, .speed_mps = 3.0, .balls = true, .crossing = true});
+  EXPECT_EQ(result.wrong_ids, 0U);
+  EXPECT_EQ(result.phantoms, 0U);
+  EXPECT_LE(static_cast<double>(result.missed), 0.005 * static_cast<double>(result.uncovered));
+}
+
 }  // namespace
 }  // namespace nadir::tracker

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <span>
 #include <vector>
 
 #include "tests/vision/detector_test_scenes.h"
@@ -184,6 +186,30 @@ TEST(SparseSearch, MarkedPlacesAreNoSeedsOfThatColour) {
     });
     EXPECT_EQ(visits, 4);
   }
+}
+
+// Bands may come in any order and overlap; the next scan of everything sees everything.
+TEST(SparseSearch, ListsOnlySeedsOfTheBandsThatItLooksAt) {
+  cv::Mat bgr = flat_picture(120, 200, {40, 40, 40});
+  const std::vector<PixelPoint> discs = {{30.2, 20.7}, {60.6, 90.4}, {80.4, 160.1}};
+  for (const PixelPoint& disc : discs) fill_disc(bgr, disc, 6.0, {230, 140, 30});
+  SparseSearch search(120, 200, 6.0, 6.0, scores_of({Colour::kBlue}));
+  const auto seen = [&](std::span<const RowBand> bands) {
+    search.scan(bgr, bands);
+    std::array<bool, 3> result{};
+    search.for_each_seed([&](const Seed& seed, const PixelPoint&) {
+      for (std::size_t i = 0; i < discs.size(); ++i) {
+        result[i] = result[i] || (seed.pixel - discs[i]).norm() < 7.0;
+      }
+    });
+    return result;
+  };
+  const std::array<RowBand, 3> ends = {{{140, 1000}, {150, 170}, {-20, 40}}};
+  EXPECT_EQ(seen(ends), (std::array{true, false, true}));
+  const std::array<RowBand, 1> middle = {{{80, 100}}};
+  EXPECT_EQ(seen(middle), (std::array{false, true, false}));
+  EXPECT_EQ(seen({}), (std::array{false, false, false}));
+  EXPECT_EQ(seen(std::array<RowBand, 1>{}), (std::array{true, true, true}));
 }
 
 // The second place is that of the disc that comes next, not that of another point of the same disc.
