@@ -103,7 +103,7 @@ void ExtendedStateObserver::start(const PlanarPose& pose) {
 
 Eigen::Vector3d ExtendedStateObserver::predict(const Eigen::Vector3d& force) {
   const Eigen::Vector3d acceleration = (force + disturbance_).cwiseQuotient(inertia_);
-  const Eigen::Vector3d displacement = tick_s_ * velocity_ + 0.5 * tick_s_ * tick_s_ * acceleration;
+  Eigen::Vector3d displacement = tick_s_ * velocity_ + 0.5 * tick_s_ * tick_s_ * acceleration;
   pose_ = {pose_.x_m + displacement.x(), pose_.y_m + displacement.y(),
            wrap_angle(pose_.heading_rad + displacement.z())};
   velocity_ += tick_s_ * acceleration;

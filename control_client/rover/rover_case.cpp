@@ -9,6 +9,7 @@ RoverCase run_rover_case(RoverWorld world, const RoverVariant& variant, std::uin
                          int runs) {
   world.looks_first = variant.looks_first;
   std::vector<RoverRecord> records;
+  records.reserve(static_cast<std::size_t>(runs));
   for (int run = 0; run < runs; ++run) {
     records.push_back(
         run_rover(world, variant.settings, first_seed + static_cast<std::uint64_t>(run)));

@@ -7,6 +7,7 @@ namespace nadir::control_client {
 
 void RoverPlant::start(const fusion::PlanarPose& pose) {
   state_ << pose.x_m, pose.y_m, pose.heading_rad, 0.0, 0.0, 0.0;
+  mean_rim_speeds_mps_.setZero();
 }
 
 fusion::PlanarPose RoverPlant::pose() const {
@@ -29,12 +30,17 @@ RoverPlant::State RoverPlant::derivative(const State& state,
 void RoverPlant::drive(const Eigen::Vector3d& wheel_forces_n, double duration_s) {
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / 1e-3 - 1e-9)));
   const double h = duration_s / steps;
+  mean_rim_speeds_mps_.setZero();
   for (int i = 0; i < steps; ++i) {
     const State a = derivative(state_, wheel_forces_n);
     const State b = derivative(state_ + 0.5 * h * a, wheel_forces_n);
     const State c = derivative(state_ + 0.5 * h * b, wheel_forces_n);
     const State d = derivative(state_ + h * c, wheel_forces_n);
+    const Eigen::Vector3d before_mps =
+        model_.wheel_matrix(state_[2]).transpose() * state_.tail<3>();
     state_ += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+    const Eigen::Vector3d after_mps = model_.wheel_matrix(state_[2]).transpose() * state_.tail<3>();
+    mean_rim_speeds_mps_ += 0.5 * (before_mps + after_mps) / steps;
   }
 }
 

@@ -31,6 +31,8 @@ class RoverPlant {
   double heading_rad() const { return state_[2]; }
   /// World frame: m/s, m/s, rad/s.
   Eigen::Vector3d velocity() const { return state_.tail<3>(); }
+  /// Of the wheels over the last drive.
+  const Eigen::Vector3d& mean_rim_speeds_mps() const { return mean_rim_speeds_mps_; }
 
  private:
   using State = Eigen::Matrix<double, 6, 1>;
@@ -39,6 +41,7 @@ class RoverPlant {
   RoverModel model_;
   DriveLosses losses_;
   State state_ = State::Zero();
+  Eigen::Vector3d mean_rim_speeds_mps_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace nadir::control_client

@@ -245,7 +245,7 @@ void EkfSlam<OdometryError, SensorError>::turn_positions() {
     const Eigen::Vector2d dp = change_.template segment<2>(row);
     if (settings_.error == ErrorKind::kTextbook) return p + dp;
     const Eigen::Vector2d xi(dp.x() + p.y() * turn, dp.y() - p.x() * turn);
-    const Eigen::Vector2d now(
+    Eigen::Vector2d now(
         rotation.cosine * p.x() - rotation.sine * p.y() + a * xi.x() - b * xi.y(),
         rotation.sine * p.x() + rotation.cosine * p.y() + b * xi.x() + a * xi.y());
     lean_[row] = -(now.y() - p.y());
