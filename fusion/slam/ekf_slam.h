@@ -80,6 +80,12 @@ class EkfSlam {
     ErrorKind error = ErrorKind::kInvariant;
     /// Largest NIS of a sighting that is believed: chi-square with 2 degrees of freedom, 99.9 %.
     double sighting_gate = 13.816;
+    /// So many scans in a row in which most landmarks that are known by name (two at least) are
+    /// beyond the gate mean that the pose is wrong, not they: its uncertainty grows by the sigmas
+    /// below, and they are judged again. 0: never.
+    int lost_after = 5;
+    double lost_sigma_m = 0.5;
+    double lost_sigma_rad = 0.3;
     AssociationKind association = AssociationKind::kNearestNeighbour;
     /// Largest NIS of a pair of nameless sighting and landmark that is considered (99 %), and
     /// smallest that surely is another landmark.
@@ -120,6 +126,9 @@ class EkfSlam {
   auto sensor_error() const { return error_.template head<kSensorStates>(); }
   auto odometry_error() const { return error_.template tail<kOdometryStates>(); }
 
+  /// How often the pose was found to be wrong (Settings::lost_after) since the start.
+  int recoveries() const { return recoveries_; }
+
   int landmarks() const { return covariance_.landmarks(); }
   Eigen::Vector2d landmark_m(int landmark) const {
     return places_m_.template segment<2>(2 * landmark);
@@ -146,6 +155,9 @@ class EkfSlam {
                                         int landmark_b) const;
   double nis(const Comparison& comparison, int landmark) const;
   bool refuse(const Sighting& sighting, std::size_t index, SightingReport& report) const;
+  void judge_named(std::span<const Sighting> sightings, std::span<SightingReport> reports) const;
+  bool is_lost(std::span<const SightingReport> reports);
+  void widen_pose();
   bool find_candidates(const Sighting& sighting, int index);
   void judge_unpaired(SightingReport& report, int index, const Pairing& pairing) const;
   void correct_by_used(std::span<const Sighting> sightings,
@@ -161,6 +173,8 @@ class EkfSlam {
   Eigen::VectorXd places_m_;
   std::vector<int> names_;
   MapCovariance covariance_;
+  int lost_scans_ = 0;  // in a row
+  int recoveries_ = 0;
   // Of the update that is being made.
   Eigen::MatrixXd innovation_covariance_;
   Eigen::VectorXd innovation_;

@@ -33,6 +33,8 @@ void EkfSlam<OdometryError, SensorError>::start(const PlanarPose& pose,
   pose_ = {pose.x_m, pose.y_m, wrap_angle(pose.heading_rad)};
   error_.setZero();
   names_.clear();
+  lost_scans_ = 0;
+  recoveries_ = 0;
   HeadMatrix head = HeadMatrix::Zero();
   head.template topLeftCorner<3, 3>() = covariance;
   if constexpr (kSensorStates > 0) {
@@ -153,17 +155,10 @@ void EkfSlam<OdometryError, SensorError>::observe(std::span<const Sighting> sigh
                                                   std::span<SightingReport> reports) {
   assert(reports.size() == sightings.size());
   covariance_.catch_up();
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    SightingReport& report = reports[i];
-    if (refuse(sightings[i], i, report)) continue;
-    report.landmark = index_of(sightings[i].name);
-    report.verdict = SightingVerdict::kNew;
-    if (report.landmark < 0) continue;
-    const Comparison comparison = compare(sightings[i], report.landmark);
-    report.innovation = comparison.innovation;
-    report.nis = nis(comparison, report.landmark);
-    report.verdict =
-        report.nis <= settings_.sighting_gate ? SightingVerdict::kUsed : SightingVerdict::kGated;
+  judge_named(sightings, reports);
+  if (is_lost(reports)) {
+    widen_pose();
+    judge_named(sightings, reports);
   }
   correct_by_used(sightings, reports);
   add_new(sightings, reports, true);
@@ -245,9 +240,8 @@ void EkfSlam<OdometryError, SensorError>::turn_positions() {
     const Eigen::Vector2d dp = change_.template segment<2>(row);
     if (settings_.error == ErrorKind::kTextbook) return p + dp;
     const Eigen::Vector2d xi(dp.x() + p.y() * turn, dp.y() - p.x() * turn);
-    Eigen::Vector2d now(
-        rotation.cosine * p.x() - rotation.sine * p.y() + a * xi.x() - b * xi.y(),
-        rotation.sine * p.x() + rotation.cosine * p.y() + b * xi.x() + a * xi.y());
+    Eigen::Vector2d now(rotation.cosine * p.x() - rotation.sine * p.y() + a * xi.x() - b * xi.y(),
+                        rotation.sine * p.x() + rotation.cosine * p.y() + b * xi.x() + a * xi.y());
     lean_[row] = -(now.y() - p.y());
     lean_[row + 1] = now.x() - p.x();
     return now;
@@ -334,4 +328,5 @@ Correction EkfSlam<OdometryError, SensorError>::correct(const PlanarPose& measur
 
 }  // namespace nadir::fusion
 
+#include "fusion/slam/ekf_slam_named_impl.h"
 #include "fusion/slam/ekf_slam_nameless_impl.h"
