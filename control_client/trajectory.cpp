@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "control_client/nominal_motion.h"
+#include "control_client/path_trajectories.h"
 
 namespace nadir::control_client {
 namespace {
@@ -206,6 +207,12 @@ const std::vector<NamedTrajectory>& standard_trajectories() {
        circle_trajectory(0.25, 1.0, 2.0, 20.0)},
       {"rose3", "rose of three petals of 0.3 m, 31.4 s", rose_trajectory(0.3, 3, 0.2)},
       {"rose4", "rose of eight petals of 0.3 m, 31.4 s", rose_trajectory(0.3, 4, 0.2)},
+      {"l-shapes", "two L shapes of 6 m at 0.1 m/s from (0.5, 0.5), heading along them",
+       l_shapes_trajectory()},
+      {"two-circles", "figure of eight of two circles of 0.5 m radius at 0.1 m/s, heading along it",
+       s1_circles_trajectory()},
+      {"square-along", "square of 1 m at 0.1 m/s, one lap, heading along it",
+       square_along_trajectory()},
       {"step", "step of 1 m, 0.5 m and 1 rad, 8 s", step_trajectory({1.0, 0.5, 1.0}, 8.0)},
   };
   return all;

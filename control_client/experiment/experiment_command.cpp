@@ -11,6 +11,7 @@
 #include "control_client/experiment/experiment_report.h"
 #include "control_client/experiment/experiment_runner.h"
 #include "control_client/experiment/path_figure.h"
+#include "control_client/experiment/study_catalogue.h"
 #include "control_client/robot_file.h"
 #include "control_client/trajectory.h"
 #include "control_client/trajectory_file.h"
@@ -23,6 +24,7 @@ const Experiment& experiment_of(const std::string& name) {
   if (const Experiment* found = find_experiment(name)) return *found;
   std::string names;
   for (const Experiment& each : experiments()) names += (names.empty() ? "" : ", ") + each.name;
+  for (const Study& each : studies()) names += ", " + each.name;
   throw vision::InputError({"nadir-client", 0, 0}, "no experiment is called '" + name + "'",
                            "choose one of " + names);
 }
@@ -53,20 +55,44 @@ void write_text(const std::string& text, const std::string& file) {
   if (!stream) throw std::runtime_error("cannot write " + file);
 }
 
+void write_results(const StudyResult& result, const ExperimentOptions& options) {
+  fmt::print("{}", result.text);
+  if (!options.json.empty()) write_text(result.json, options.json);
+  if (!options.plot.empty()) write_text(result.svg, options.plot);
+}
+
+void show_progress(std::size_t done, std::size_t cases) {
+  fmt::print(stderr, "\r{} of {} cases{}", done, cases, done == cases ? "\n" : "");
+}
+
+void run_study(const Study& study, const ExperimentOptions& options, bool shows_progress) {
+  if (!options.robot.empty() || !options.trajectory.empty()) {
+    throw vision::InputError({"nadir-client", 0, 0},
+                             study.name + " has a robot and trajectories of its own",
+                             "leave --robot and --trajectory away");
+  }
+  StudyRuns runs{
+      options.first_seed.value_or(study.first_seed), options.runs.value_or(study.runs), {}};
+  if (shows_progress) runs.progress = show_progress;
+  write_results(study.run(runs), options);
+}
+
 }  // namespace
 
 void run_experiment_command(const ExperimentOptions& options, bool shows_progress) {
+  if (const Study* study = find_study(options.name)) {
+    run_study(*study, options, shows_progress);
+    return;
+  }
   const Experiment experiment = adapted(experiment_of(options.name), options);
   const ExperimentResult result =
       run_experiment(experiment, options.first_seed.value_or(experiment.first_seed),
                      options.runs.value_or(experiment.runs), [&](std::size_t done) {
-                       if (!shows_progress) return;
-                       fmt::print(stderr, "\r{} of {} cases{}", done, experiment.cases.size(),
-                                  done == experiment.cases.size() ? "\n" : "");
+                       if (shows_progress) show_progress(done, experiment.cases.size());
                      });
-  fmt::print("{}", text_report(result));
-  if (!options.json.empty()) write_text(json_report(result).dump(2) + "\n", options.json);
-  if (!options.plot.empty()) write_text(path_figure(result), options.plot);
+  write_results({text_report(result), json_report(result).dump(2) + "\n",
+                 options.plot.empty() ? "" : path_figure(result)},
+                options);
 }
 
 std::string list_text() {
@@ -76,6 +102,9 @@ std::string list_text() {
     fmt::format_to(out, "trajectory  {:<16} {}\n", each.name, each.description);
   }
   for (const Experiment& each : experiments()) {
+    fmt::format_to(out, "experiment  {:<16} {}\n", each.name, each.description);
+  }
+  for (const Study& each : studies()) {
     fmt::format_to(out, "experiment  {:<16} {}\n", each.name, each.description);
   }
   return text;

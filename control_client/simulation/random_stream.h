@@ -15,6 +15,9 @@ enum class RandomPurpose : std::uint64_t {
   kPixelCounts = 4,
   kBurstLoss = 5,
   kLandmarks = 6,
+  kGyro = 7,
+  kMagnetometer = 8,
+  kHeading = 9,
 };
 
 /// Random numbers that are the same on every machine (SplitMix64; Steele, Lea, Flood 2014).

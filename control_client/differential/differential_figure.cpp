@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "control_client/differential/differential_report.h"
+#include "control_client/experiment/svg_axes.h"
+
+namespace nadir::control_client {
+namespace {
+
+constexpr double kField = 420.0;
+constexpr double kTimes = 520.0;
+constexpr double kTop = 60.0;
+constexpr double kLeft = 62.0;
+constexpr double kGap = 84.0;
+constexpr std::size_t kMostDrawn = 4;
+constexpr const char* kStyle = R"(<style>
+text { font-family: "DejaVu Sans", Verdana, Helvetica, Arial, sans-serif; font-size: 12px; fill: #222; }
+.title { font-size: 13px; font-weight: bold; }
+.note { font-size: 11px; fill: #555; }
+.frame { fill: none; stroke: #444; }
+.grid { stroke: #e6e6e6; }
+path { fill: none; stroke-linejoin: round; stroke-linecap: round; stroke-width: 1.5; }
+.reference { stroke: #999; stroke-width: 4; opacity: 0.5; }
+.c0 { stroke: #1668b5; }
+.c1 { stroke: #3b8f4a; }
+.c2 { stroke: #d1493f; }
+.c3 { stroke: #d98a00; }
+</style>
+)";
+
+using Results = std::vector<const DifferentialResult*>;
+
+Results drawn_results(const std::vector<DifferentialResult>& results,
+                      const DifferentialLook& look) {
+  Results drawn;
+  for (const std::string& name : look.drawn) {
+    const auto found = std::find_if(results.begin(), results.end(), [&](const auto& each) {
+      return each.which.name == name && !each.example.empty();
+    });
+    if (found != results.end() && drawn.size() < kMostDrawn) drawn.push_back(&*found);
+  }
+  return drawn;
+}
+
+// A square that holds the reference, with a margin: who drives away leaves the picture.
+AxesRange field_range(const Results& drawn) {
+  Eigen::Array2d low = Eigen::Array2d::Constant(1e9);
+  Eigen::Array2d high = -low;
+  for (const DifferentialTick& tick : drawn.front()->example) {
+    low = low.min(tick.reference.pose.position_m().array());
+    high = high.max(tick.reference.pose.position_m().array());
+  }
+  const Eigen::Array2d middle = 0.5 * (low + high);
+  const double half = 0.68 * (high - low).maxCoeff();
+  return {middle.x() - half, middle.x() + half, middle.y() - half, middle.y() + half};
+}
+
+std::string draw_field(const Results& drawn) {
+  const SvgAxes axes("field", {kLeft, kTop, kField, kField}, field_range(drawn));
+  std::string out = axes.frame("true paths on the reference (grey)", "x, m", "y, m");
+  std::vector<Eigen::Vector2d> points;
+  for (const DifferentialTick& tick : drawn.front()->example) {
+    points.push_back(tick.reference.pose.position_m());
+  }
+  out += axes.curve(points, "reference");
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    points.clear();
+    for (const DifferentialTick& tick : drawn[i]->example) {
+      points.push_back(tick.truth.position_m());
+    }
+    out += axes.curve(points, fmt::format("c{}", i));
+  }
+  return out;
+}
+
+std::string draw_errors(const Results& drawn) {
+  constexpr double kMillimetres = 1e3;
+  double most_mm = 10.0;
+  std::vector<std::vector<Eigen::Vector2d>> curves;
+  for (const DifferentialResult* each : drawn) {
+    std::vector<Eigen::Vector2d>& curve = curves.emplace_back();
+    for (const DifferentialTick& tick : each->example) {
+      const double off_m = (tick.truth.position_m() - tick.reference.pose.position_m()).norm();
+      curve.emplace_back(tick.time_s, kMillimetres * off_m);
+      most_mm = std::max(most_mm, kMillimetres * off_m);
+    }
+  }
+  const double end_s = drawn.front()->example.back().time_s;
+  AxesRange range{0.0, end_s, 0.0, 1.05 * most_mm};
+  // Millimetres beside metres need a logarithmic axis.
+  if (most_mm > 300.0) range = {0.0, end_s, 1.0, 1.5 * most_mm, true};
+  const SvgAxes axes("error", {kLeft + kField + kGap, kTop, kTimes, kField}, range);
+  std::string out = axes.frame("distance from the reference", "time, s", "mm");
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    out += axes.curve(curves[i], fmt::format("c{}", i));
+  return out;
+}
+
+std::string legend(const Results& drawn, double y) {
+  constexpr double kColumn = 264.0;
+  std::string out;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const double x = kLeft + kColumn * static_cast<double>(i);
+    out += fmt::format("<path d=\"M{:.1f} {:.1f}h26\" class=\"c{}\"/>\n", x, y, i);
+    out += svg_text(x + 32.0, y + 4.0, drawn[i]->which.label, "class=\"note\"");
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string differential_figure(const std::vector<DifferentialResult>& results,
+                                const DifferentialLook& look) {
+  const Results drawn = drawn_results(results, look);
+  constexpr double kWidth = kLeft + kField + kGap + kTimes + 24.0;
+  constexpr double kHeight = kTop + kField + 84.0;
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n{2}"
+      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+      kWidth, kHeight, kStyle);
+  if (!drawn.empty()) out += draw_field(drawn) + draw_errors(drawn) + legend(drawn, kHeight - 20.0);
+  return out + "</svg>\n";
+}
+
+}  // namespace nadir::control_client
