@@ -48,7 +48,7 @@ Eigen::Vector3d RoverNavigator::tick(std::span<const fusion::Sighting> seen) {
   const Eigen::Vector3d wanted =
       controller_.force(command_, velocity_.velocity(), velocity_.acceleration());
   const double heading_rad = slam_.pose().heading_rad;
-  const Eigen::Vector3d wheels = model_.wheel_forces(heading_rad, wanted - velocity_.disturbance());
+  Eigen::Vector3d wheels = model_.wheel_forces(heading_rad, wanted - velocity_.disturbance());
   force_ = model_.wheel_matrix(heading_rad) * wheels;
   return wheels;
 }
