@@ -15,6 +15,7 @@ constexpr double kTop = 60.0;
 constexpr double kLeft = 62.0;
 constexpr double kGap = 84.0;
 constexpr std::size_t kMostDrawn = 4;
+constexpr std::size_t kDrawnTick = 5;  // one of so many
 constexpr const char* kStyle = R"(<style>
 text { font-family: "DejaVu Sans", Verdana, Helvetica, Arial, sans-serif; font-size: 12px; fill: #222; }
 .title { font-size: 13px; font-weight: bold; }
@@ -57,20 +58,27 @@ AxesRange field_range(const Results& drawn) {
   return {middle.x() - half, middle.x() + half, middle.y() - half, middle.y() + half};
 }
 
+// A value of some of a run's ticks.
+template <class Value>
+std::vector<Eigen::Vector2d> points_of(const DifferentialResult& result, Value value) {
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < result.example.size(); i += kDrawnTick) {
+    points.push_back(value(result.example[i]));
+  }
+  return points;
+}
+
 std::string draw_field(const Results& drawn) {
   const SvgAxes axes("field", {kLeft, kTop, kField, kField}, field_range(drawn));
   std::string out = axes.frame("true paths on the reference (grey)", "x, m", "y, m");
-  std::vector<Eigen::Vector2d> points;
-  for (const DifferentialTick& tick : drawn.front()->example) {
-    points.push_back(tick.reference.pose.position_m());
-  }
-  out += axes.curve(points, "reference");
+  out +=
+      axes.curve(points_of(*drawn.front(),
+                           [](const DifferentialTick& t) { return t.reference.pose.position_m(); }),
+                 "reference");
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    points.clear();
-    for (const DifferentialTick& tick : drawn[i]->example) {
-      points.push_back(tick.truth.position_m());
-    }
-    out += axes.curve(points, fmt::format("c{}", i));
+    out += axes.curve(
+        points_of(*drawn[i], [](const DifferentialTick& t) { return t.truth.position_m(); }),
+        fmt::format("c{}", i));
   }
   return out;
 }
@@ -80,12 +88,11 @@ std::string draw_errors(const Results& drawn) {
   double most_mm = 10.0;
   std::vector<std::vector<Eigen::Vector2d>> curves;
   for (const DifferentialResult* each : drawn) {
-    std::vector<Eigen::Vector2d>& curve = curves.emplace_back();
-    for (const DifferentialTick& tick : each->example) {
-      const double off_m = (tick.truth.position_m() - tick.reference.pose.position_m()).norm();
-      curve.emplace_back(tick.time_s, kMillimetres * off_m);
+    curves.push_back(points_of(*each, [&](const DifferentialTick& t) {
+      const double off_m = (t.truth.position_m() - t.reference.pose.position_m()).norm();
       most_mm = std::max(most_mm, kMillimetres * off_m);
-    }
+      return Eigen::Vector2d(t.time_s, kMillimetres * off_m);
+    }));
   }
   const double end_s = drawn.front()->example.back().time_s;
   AxesRange range{0.0, end_s, 0.0, 1.05 * most_mm};

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "control_client/experiment/experiment_report.h"
 #include "control_client/experiment/experiment_runner.h"
@@ -16,6 +14,7 @@
 #include "control_client/trajectory.h"
 #include "control_client/trajectory_file.h"
 #include "vision/input/input_error.h"
+#include "vision/input/text_file.h"
 
 namespace nadir::control_client {
 namespace {
@@ -48,17 +47,10 @@ Experiment adapted(Experiment experiment, const ExperimentOptions& options) {
   return experiment;
 }
 
-void write_text(const std::string& text, const std::string& file) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw std::runtime_error("cannot write " + file);
-}
-
 void write_results(const StudyResult& result, const ExperimentOptions& options) {
   fmt::print("{}", result.text);
-  if (!options.json.empty()) write_text(result.json, options.json);
-  if (!options.plot.empty()) write_text(result.svg, options.plot);
+  if (!options.json.empty()) vision::write_text_file(options.json, result.json);
+  if (!options.plot.empty()) vision::write_text_file(options.plot, result.svg);
 }
 
 void show_progress(std::size_t done, std::size_t cases) {

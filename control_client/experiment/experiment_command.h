@@ -19,8 +19,8 @@ struct ExperimentOptions {
 };
 
 /// Runs an experiment and prints its table on standard output. Throws vision::InputError for an
-/// unknown name, a wrong file or a trajectory that the robot cannot drive, and std::runtime_error
-/// for a file that cannot be written.
+/// unknown name, a wrong file, a trajectory that the robot cannot drive, and a file that cannot be
+/// written.
 void run_experiment_command(const ExperimentOptions& options, bool shows_progress);
 
 /// `nadir-client list`: trajectories and experiments, a line each.
