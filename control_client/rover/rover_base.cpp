@@ -18,18 +18,18 @@ RobotParameters rover_description(const RoverParameters& rover) {
   robot.wheels = {{90.0 * kDegree, rover.arm_m},
                   {-150.0 * kDegree, rover.arm_m},
                   {-30.0 * kDegree, rover.arm_m}};
-  robot.max_speed_mps = 0.5;  // C_S of S4's guidance
-  robot.max_turn_rate_radps = 2.0;
+  constexpr double kMoreThanEnough_v = 1000.0;
+  robot.motor.max_voltage_v = kMoreThanEnough_v;
   return robot;
 }
 
-RoverBase::RoverBase(const RoverParameters& rover, const DriveLosses& losses,
-                     const SimulationSettings& settings, Timestamp now,
+RoverBase::RoverBase(const RoverRobot& rover, const SimulationSettings& settings, Timestamp now,
                      SimulatedBase::TruthSink on_truth)
     : settings_(settings),
-      geometry_(RobotModel(rover_description(rover)).geometry()),
-      plant_(RoverModel(rover), losses),
-      firmware_(RoverModel(rover), {.step_s = settings.step_s}),
+      geometry_(RobotModel(rover_description(rover.body)).geometry()),
+      plant_(RoverModel(rover.body), rover.losses),
+      firmware_(RoverModel(rover.body),
+                {settings.step_s, rover.firmware.observer_radps, rover.firmware.velocity_radps}),
       encoders_(settings.encoders, geometry_.wheels(), settings.seed),
       time_(now),
       on_truth_(std::move(on_truth)) {

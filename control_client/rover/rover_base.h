@@ -4,6 +4,7 @@
 
 #include "control_client/drive/robot_base.h"
 #include "control_client/drive/simulated_base.h"
+#include "control_client/rover/rover_file.h"
 #include "control_client/rover/rover_firmware.h"
 #include "control_client/rover/rover_plant.h"
 
@@ -19,8 +20,7 @@ RobotParameters rover_description(const RoverParameters& rover);
 /// robot and are zero force.
 class RoverBase : public RobotBase {
  public:
-  RoverBase(const RoverParameters& rover, const DriveLosses& losses,
-            const SimulationSettings& settings, fusion::Timestamp now,
+  RoverBase(const RoverRobot& rover, const SimulationSettings& settings, fusion::Timestamp now,
             SimulatedBase::TruthSink on_truth);
 
   void take_odometry(fusion::Timestamp now, std::vector<OdometryInterval>* odometry) override;

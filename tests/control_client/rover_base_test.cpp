@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <filesystem>
 #include <vector>
 
 #include "fusion/odometry.h"
@@ -21,7 +22,7 @@ constexpr Timestamp kStart = 100s;
 RoverBase base_with(EncoderKind encoders) {
   SimulationSettings settings;
   settings.encoders.kind = encoders;
-  return {RoverParameters{}, DriveLosses{}, settings, kStart, {}};
+  return {RoverRobot{}, settings, kStart, {}};
 }
 
 tracker::WireWheelCommand rates(double u_mps, double v_mps, double r_radps) {
@@ -49,6 +50,23 @@ TEST(RoverDescription, HasTheWheelsOfTheory) {
   const RobotModel robot(rover_description({}));
   const Eigen::Matrix3d b = RoverModel{}.wheel_matrix(0.0);
   EXPECT_LT((robot.drive() - b).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(RoverFile, OfTheDataIsTheDefault) {
+  const RoverRobot read =
+      load_rover_robot_file(std::filesystem::path(NADIR_DATA_DIR) / "robots/rover.yaml");
+  const RoverRobot rover;
+  EXPECT_EQ(read.name, rover.name);
+  EXPECT_EQ(read.body.mass_kg, rover.body.mass_kg);
+  EXPECT_EQ(read.body.inertia_kgm2, rover.body.inertia_kgm2);
+  EXPECT_EQ(read.body.arm_m, rover.body.arm_m);
+  EXPECT_EQ(read.losses.input_loss, rover.losses.input_loss);
+  EXPECT_EQ(read.losses.friction_n, rover.losses.friction_n);
+  EXPECT_EQ(read.firmware.observer_radps, rover.firmware.observer_radps);
+  EXPECT_EQ(read.firmware.velocity_radps, rover.firmware.velocity_radps);
+  EXPECT_EQ(read.max_speed_mps, rover.max_speed_mps);
+  EXPECT_EQ(read.max_turn_rate_radps, rover.max_turn_rate_radps);
+  EXPECT_EQ(read.tick_s, rover.tick_s);
 }
 
 TEST(RoverBase, ReachesTheCommandedRatesAgainstFriction) {

@@ -29,7 +29,7 @@ class Loop {
   explicit Loop(const char* trajectory)
       : trajectory_(standard_trajectory(trajectory)),
         core_(model_, settings(), trajectory_),
-        base_(RoverParameters{}, DriveLosses{}, simulation(trajectory_->at(0.0).pose), now_, {}) {}
+        base_(RoverRobot{}, simulation(trajectory_->at(0.0).pose), now_, {}) {}
 
   Quality drive(double duration_s) {
     Quality quality;
