@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "vision/prefetch.h"
+
 namespace nadir::tracker {
 namespace {
 
@@ -129,21 +131,12 @@ bool FollowedRobots::misses_someone(std::size_t layout,
   return true;
 }
 
-// Asks memory for the pixels of the robot that is next, before they are needed.
+// Asks memory for the pixels of the robot that is next.
 void FollowedRobots::fetch(const cv::Mat& image, const FollowedRobot& robot) const {
-  constexpr std::ptrdiff_t kCacheLineBytes = 64;
   const vision::PixelPoint& at = robot.aligned.centre_px;
-  const double reach_px =
-      aligners_[robot.layout].robot().reach_m / grids_[robot.layout]->metres_per_pixel(at);
-  const int row_end = std::min(image.rows, static_cast<int>(at.y() + reach_px));
-  const std::ptrdiff_t begin = 3 * std::max(0, static_cast<int>(at.x() - reach_px));
-  const std::ptrdiff_t end = 3 * std::min(image.cols, static_cast<int>(at.x() + reach_px));
-  for (int row = std::max(0, static_cast<int>(at.y() - reach_px)); row < row_end; ++row) {
-    const std::uint8_t* const line = image.ptr<std::uint8_t>(row);
-    for (std::ptrdiff_t byte = begin; byte < end; byte += kCacheLineBytes) {
-      __builtin_prefetch(line + byte);
-    }
-  }
+  vision::fetch_square(
+      image, at,
+      aligners_[robot.layout].robot().reach_m / grids_[robot.layout]->metres_per_pixel(at));
 }
 
 // Plates of the other robots of a layout, where they are by now or are expected.

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <tuple>
 
 #include "tracker/pixel_near.h"
 #include "vision/input/input_error.h"
+#include "vision/prefetch.h"
 
 namespace nadir::tracker {
 namespace {
@@ -19,6 +21,7 @@ constexpr double kForgotten_s = 0.25;
 constexpr int kMostMissed = 1;  // frames; later it is a newcomer wherever it is
 constexpr double kMargin_px = 3.0;
 constexpr double kMostMargin_sides = 2.0;  // beyond, the search for newcomers is cheaper
+constexpr double kFetched_sides = 0.75;    // about a tag's middle
 constexpr double kMostMisshape = 0.12;     // of a side, and 1.5 px more
 constexpr double kFullMargin = 38.0;       // grey levels; a decision margin that leaves no doubt
 constexpr unsigned kFramesPerMosaicCheck = 64;
@@ -90,9 +93,19 @@ void TagRobots::detect(const vision::Frame& frame) {
   expected_.clear();
   found_.clear();
   misshapen_.clear();
-  for (const Memory& robot : memories_) expect(frame, robot);
+  for (std::size_t i = 0; i < memories_.size(); ++i) {
+    if (i + 1 < memories_.size()) fetch(frame.image, memories_[i + 1]);
+    expect(frame, memories_[i]);
+  }
   search_.search(frame.image, expected_, found_, false, seen_);
   for (const vision::TagSighting& seen : seen_.tags) take(frame.image, seen);
+}
+
+// Asks memory for the pixels of the robot that is next.
+void TagRobots::fetch(const cv::Mat& image, const Memory& robot) const {
+  const double side_px =
+      kinds_[robot.kind].layout.size_m / grids_[robot.kind]->metres_per_pixel(robot.centre_px);
+  vision::fetch_square(image, robot.centre_px, kFetched_sides * side_px);
 }
 
 // Where the robot's tags should be now: aligned there, or a place to search.
@@ -107,7 +120,7 @@ void TagRobots::expect(const vision::Frame& frame, const Memory& robot) {
   const double unknown_m =
       robot.has_velocity ? kAcceleration_mps2 * ahead_s * ahead_s : kFastest_mps * ahead_s;
   const double margin_px = kMargin_px + std::min(scale * unknown_m, kMostMargin_sides * side_px);
-  for (const vision::MountedTag& tag : kind.layout.tags_of(robot.id)) {
+  for (const vision::MountedTag& tag : robot.tags) {
     Sighting sighting{.kind = robot.kind, .robot_id = robot.id, .tag_id = tag.tag_id, .pose = {}};
     sighting.pose.mount = tag.mount;
     sighting.pose.pose_world_tag = mounted_pose(pose, tag.mount);
@@ -180,12 +193,17 @@ void TagRobots::locate(std::vector<RejectionReport>& rejected) {
     rejected.push_back({candidate.centre_px, vision::reject_reason_text(candidate.reason)});
   }
   // The surest tag of a robot first: it decides which others agree with it.
-  std::ranges::stable_sort(sightings_, std::ranges::greater{}, &Sighting::confidence);
+  std::ranges::sort(sightings_, [](const Sighting& a, const Sighting& b) {
+    return std::tie(b.confidence, a.kind, a.tag_id) < std::tie(a.confidence, b.kind, b.tag_id);
+  });
   robots_.clear();
   for (std::size_t i = 0; i < sightings_.size(); ++i) {
     if (!sightings_[i].taken) robots_.push_back(robot_of(i));
   }
-  std::ranges::stable_sort(robots_, std::ranges::greater{}, &TagRobot::tag_count);
+  std::ranges::sort(robots_, [](const TagRobot& a, const TagRobot& b) {
+    return std::tie(b.tag_count, b.confidence, a.layout_index, a.id) <
+           std::tie(a.tag_count, a.confidence, b.layout_index, b.id);
+  });
   remember();
 }
 
@@ -234,6 +252,7 @@ void TagRobots::remember() {
       memory = memories_.end() - 1;
       memory->kind = kind;
       memory->id = robot.id;
+      memory->tags = kinds_[kind].layout.tags_of(robot.id);
     } else if (memory->time == time_) {
       continue;  // a second claim of the number
     }

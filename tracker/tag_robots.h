@@ -71,6 +71,7 @@ class TagRobots {
   struct Memory {
     std::size_t kind = 0;
     int id = 0;
+    std::vector<vision::MountedTag> tags;
     fusion::PlanarPose pose;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s, m/s, rad/s
     bool has_velocity = false;
@@ -91,6 +92,7 @@ class TagRobots {
   };
 
   void look_for_mosaic(const cv::Mat& image);
+  void fetch(const cv::Mat& image, const Memory& robot) const;
   void expect(const vision::Frame& frame, const Memory& robot);
   bool align(const cv::Mat& image, Sighting& sighting, bool teach);
   void take(const cv::Mat& image, const vision::TagSighting& seen);

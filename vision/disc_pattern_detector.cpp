@@ -10,6 +10,7 @@
 #include "vision/input/input_error.h"
 #include "vision/mosaic_trace.h"
 #include "vision/pattern_match.h"
+#include "vision/prefetch.h"
 #include "vision/sparse_search.h"
 
 namespace nadir::vision {
@@ -21,7 +22,6 @@ constexpr float kLeastHueShare = 0.2F;  // of the team's hue in the contrast
 constexpr double kLeastArea = 0.4;      // soft pixel count over expected count
 constexpr double kMostArea = 1.7;
 constexpr double kLeastApart = 0.8;  // two discs' centres, over the sum of their radii
-constexpr std::ptrdiff_t kCacheLineBytes = 64;
 constexpr std::size_t kMostRejections = 256;
 constexpr std::size_t kMostRobots = 256;
 constexpr unsigned kFramesPerMosaicCheck = 16;  // a camera keeps its sensor
@@ -96,18 +96,7 @@ void DiscPatternDetector::State::reject(DetectionResult& result, const PixelPoin
 
 // Asks memory for the pixels that a robot at this place would cover, before they are needed.
 void DiscPatternDetector::State::fetch_robot(const cv::Mat& bgr, const PixelPoint& place) const {
-  const int reach_px = static_cast<int>(std::ceil(reach_m * scale.largest_pixels_per_metre()));
-  const int u = static_cast<int>(place.x());
-  const int v = static_cast<int>(place.y());
-  const std::ptrdiff_t begin = 3 * std::max(0, u - reach_px) / kCacheLineBytes * kCacheLineBytes;
-  const std::ptrdiff_t end = 3 * std::min(bgr.cols, u + reach_px);
-  const int row_end = std::min(bgr.rows, v + reach_px);
-  for (int row = std::max(0, v - reach_px); row < row_end; ++row) {
-    const std::uint8_t* const line = bgr.ptr<std::uint8_t>(row);
-    for (std::ptrdiff_t byte = begin; byte < end; byte += kCacheLineBytes) {
-      __builtin_prefetch(line + byte);
-    }
-  }
+  fetch_square(bgr, place, reach_m * scale.largest_pixels_per_metre());
 }
 
 void DiscPatternDetector::State::mark_robot(const PixelPoint& place) {

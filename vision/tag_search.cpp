@@ -94,7 +94,7 @@ void TagSearch::search(const cv::Mat& image, std::span<const ExpectedTag> expect
   }
   const bool nobody = expected.empty() && found.empty();
   search_newcomers(image, found, everywhere || nobody, result);
-  learn_contrast(result);
+  if (found.empty() || !result.tags.empty()) learn_contrast(result);
 }
 
 void TagSearch::look_around(const cv::Mat& image, const cv::Rect& part, double side_px,

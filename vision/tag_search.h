@@ -45,8 +45,9 @@ struct TagSearchResult {
 /// expected.
 ///
 /// How much contrast counts is learnt from the tags that are seen; before the first one it is a
-/// quarter of the strongest that the frame has. A tag counts if a layout has its number and it is
-/// as large as the calibration says. Not thread-safe.
+/// quarter of the strongest that the frame has. It is forgotten where no tag is seen any more. A
+/// tag counts if a layout has its number and it is as large as the calibration says. Not
+/// thread-safe.
 class TagSearch {
  public:
   /// `kinds`: at least one. All grids of one size, that of the frames.

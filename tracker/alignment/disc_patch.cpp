@@ -6,14 +6,15 @@
 #include <cstdint>
 #include <cstring>
 
-#include "tracker/alignment/lanes.h"
+#include "tracker/alignment/bgr_run.h"
 #include "vision/vector_clones.h"
 
 namespace nadir::tracker {
 namespace {
 
-constexpr int kRun = 8;           // pixels that are taken apart at once
-constexpr int kRunBytes = 28;     // that are read for them
+using bgr_run::kRun;
+using bgr_run::Values;
+
 constexpr int kLeastHole_px = 5;  // a shorter one in a row costs more to leave out than to look at
 
 // Pixels of a row, the last not included.
@@ -106,40 +107,21 @@ void pad(DiscPatch& patch) {
   }
 }
 
-// NOLINTBEGIN(modernize-use-using)
-typedef std::uint8_t Bytes __attribute__((vector_size(16)));
-typedef std::int32_t Words __attribute__((vector_size(4 * kRun)));
-typedef float Values __attribute__((vector_size(4 * kRun)));
-// NOLINTEND(modernize-use-using)
-
-// Eight pixels of blue, green and red, each in a word whose highest byte is another's.
-NADIR_INLINE void spread_out(const std::uint8_t* bgr, Words& words) {
-  Bytes halves[2];
-  std::memcpy(&halves[0], bgr, sizeof(Bytes));
-  std::memcpy(&halves[1], bgr + kRunBytes - sizeof(Bytes), sizeof(Bytes));
-  for (Bytes& half : halves) {
-    half = __builtin_shufflevector(half, half, 0, 1, 2, 3, 3, 4, 5, 6, 6, 7, 8, 9, 9, 10, 11, 12);
-  }
-  std::memcpy(&words, halves, sizeof(words));
-}
-
 // Writes eight pixels from `i` on, whether or not so many are wanted.
-NADIR_INLINE void take_run(const std::uint8_t* bgr, const Rows& rows, float du, float dv,
+NADIR_INLINE void take_run(const bgr_run::Words& words, const Rows& rows, float du, float dv,
                            std::size_t i, DiscPatch& patch) {
-  Words words;
-  spread_out(bgr, words);
   const Values from_first = {0, 1, 2, 3, 4, 5, 6, 7};
   const Values across = from_first + du;
   const Values down = from_first * 0.0F + dv;
   const Values per_light = 1.0F / (rows.level + rows.by_u * across + rows.by_v * down);
-  const Values blue = __builtin_convertvector(words & 255, Values) * per_light;
-  const Values green = __builtin_convertvector(words >> 8 & 255, Values) * per_light;
-  const Values red = __builtin_convertvector(words >> 16 & 255, Values) * per_light;
   std::memcpy(&patch.du[i], &across, sizeof(Values));
   std::memcpy(&patch.dv[i], &down, sizeof(Values));
-  std::memcpy(&patch.value[0][i], &blue, sizeof(Values));
-  std::memcpy(&patch.value[1][i], &green, sizeof(Values));
-  std::memcpy(&patch.value[2][i], &red, sizeof(Values));
+  for (int c = 0; c < 3; ++c) {
+    Values value;
+    bgr_run::channel(words, c, value);
+    value *= per_light;
+    std::memcpy(&patch.value[static_cast<std::size_t>(c)][i], &value, sizeof(Values));
+  }
 }
 
 NADIR_INLINE void take_chord(const std::uint8_t* row, int row_bytes, const Chord& chord, int v,
@@ -148,15 +130,10 @@ NADIR_INLINE void take_chord(const std::uint8_t* row, int row_bytes, const Chord
   const auto dv = static_cast<float>(v - rows.v0);
   for (int first = 0; first < count; first += kRun) {
     const int u = chord.begin + first;
-    const std::uint8_t* bgr = row + 3 * static_cast<std::ptrdiff_t>(u);
-    // Never reads past the row's end: what would lie there is arbitrary.
-    std::array<std::uint8_t, kRunBytes> tail{};
-    if (3 * u + kRunBytes > row_bytes) {
-      std::memcpy(tail.data(), bgr, static_cast<std::size_t>(row_bytes - 3 * u));
-      bgr = tail.data();
-    }
-    take_run(bgr, rows, static_cast<float>(u - rows.u0), dv,
-             static_cast<std::size_t>(patch.count) + static_cast<std::size_t>(first), patch);
+    bgr_run::Words words;
+    bgr_run::load(row, row_bytes, u, words);
+    take_run(words, rows, static_cast<float>(u - rows.u0), dv,
+             static_cast<std::size_t>(patch.count + first), patch);
   }
   patch.count += count;
 }
