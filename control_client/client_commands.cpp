@@ -43,6 +43,10 @@ void ClientCommands::add_drive(CLI::App& app) {
   add_network(*drive_, options.domain, options.partition);
   drive_->add_option("--robot-file", options.robot_file, "body, wheels and gains; omni3 by default")
       ->type_name("ROBOT.yaml");
+  drive_
+      ->add_option("--robot-type", options.robot_type,
+                   "omnidirectional, differential or rover; what the robot's file says by default")
+      ->type_name("TYPE");
   drive_->add_option("--speed", options.speed, "factor on the speed of the trajectory")
       ->check(CLI::Range(0.01, 100.0));
   drive_->add_flag("--fit", options.fits_limits, "slower where the robot could not follow");

@@ -80,6 +80,7 @@ RobotConfig load_robot(const std::filesystem::path& file) {
   const YamlMap map = YamlMap::load(file);
   RobotConfig config;
   RobotParameters& robot = config.robot;
+  map.choice_or("type", kOmnidirectional, {kOmnidirectional});
   robot.name = map.text_or("name", file.stem().string());
   robot.mass_kg = map.number_or("mass_kg", robot.mass_kg, kMass_kg);
   robot.inertia_kg_m2 = map.number_or("inertia_kg_m2", robot.inertia_kg_m2, kInertia_kgm2);

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 
 #include "control_client/drive/drive_config.h"
 #include "control_client/drive/drive_process.h"
 #include "control_client/drive/realtime_priority.h"
+#include "control_client/drive/robot_kinds.h"
 #include "control_client/trajectory_file.h"
 #include "tracker/wire/wire_types.h"
 #include "vision/input/input_error.h"
@@ -27,6 +29,7 @@ DriveConfig effective_config(const DriveOptions& options) {
   if (options.partition) config.partition = *options.partition;
   if (options.team) config.team = *options.team;
   if (!options.robot_file.empty()) config.robot = options.robot_file;
+  if (!options.robot_type.empty()) config.robot_type = options.robot_type;
   if (options.speed) config.speed = *options.speed;
   if (options.fits_limits) config.fits_limits = true;
   if (options.repeats || options.duration_s) config.plan.repeats = true;
@@ -41,22 +44,29 @@ DriveConfig effective_config(const DriveOptions& options) {
   return config;
 }
 
+TrajectoryPtr trajectory_for(const DrivenRobot& robot, const std::string& name,
+                             const DriveConfig& config) {
+  const RobotModel model(robot.config.robot);
+  TrajectoryPtr trajectory = config.fits_limits ? fitting_trajectory(name, model, config.speed)
+                                                : choose_trajectory(name, model, config.speed);
+  return robot.suited ? robot.suited(name, std::move(trajectory)) : trajectory;
+}
+
 }  // namespace
 
 void run_drive_command(const DriveOptions& options, const std::atomic<bool>& stop) {
-  const DriveConfig config = effective_config(options);
+  DriveConfig config = effective_config(options);
   if (options.prints_config) {
     fmt::print("{}", drive_config_yaml(config));
     return;
   }
   DriveTask task;
   task.robot = options.robot;
-  if (!config.robot.empty()) task.robot_config = load_robot(config.robot);
-  const RobotModel model(task.robot_config.robot);
-  task.trajectory =
-      placed(config.fits_limits ? fitting_trajectory(options.trajectory, model, config.speed)
-                                : choose_trajectory(options.trajectory, model, config.speed),
-             config.place);
+  task.body = load_driven_robot(config.robot_type, config.robot);
+  if (!task.body.takes_volts && config.output == tracker::WheelCommandKind::kVolts) {
+    config.output = tracker::WheelCommandKind::kBodyRates;
+  }
+  task.trajectory = placed(trajectory_for(task.body, options.trajectory, config), config.place);
   task.simulates = options.simulates;
   task.log = options.log;
   task.duration_s = options.duration_s;

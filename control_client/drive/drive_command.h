@@ -17,6 +17,7 @@ struct DriveOptions {
   std::optional<std::string> partition;
   std::optional<std::string> team;
   std::string robot_file;
+  std::string robot_type;  ///< empty: what the robot's file says
   std::optional<double> speed;
   bool fits_limits = false;
   bool repeats = false;

@@ -190,6 +190,7 @@ void everything(Io& io, DriveConfig* config) {
   io.text("team", &config->team);
   io.text("robot", &robot);
   config->robot = robot;
+  io.text("robot_type", &config->robot_type);
   io.choice("output", kOutputs, &config->output);
   io.number("command_valid_s", {0.005, 10.0}, &config->command_valid_s);
   io.integer("realtime_priority", {0.0, 99.0}, &config->realtime_priority);

@@ -8,7 +8,6 @@
 #include "control_client/drive/client_clock.h"
 #include "control_client/drive/drive_core.h"
 #include "control_client/drive/simulated_base.h"
-#include "control_client/robot_file.h"
 
 namespace nadir::control_client {
 
@@ -18,7 +17,8 @@ struct DriveConfig {
   int domain = 0;
   std::string partition;
   std::string team = "blue";
-  std::filesystem::path robot;  ///< ROBOT.yaml; empty: omni3
+  std::filesystem::path robot;  ///< ROBOT.yaml; empty: the type's own, omni3
+  std::string robot_type;       ///< empty: what ROBOT.yaml says
   tracker::WheelCommandKind output = tracker::WheelCommandKind::kVolts;
   double command_valid_s = 0.1;
   int realtime_priority = 10;         ///< 1 to 99, taken where the system allows it; 0: none

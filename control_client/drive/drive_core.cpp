@@ -28,9 +28,9 @@ std::uint32_t folded(std::uint64_t epoch) {
 
 DriveCore::DriveCore(const RobotModel& model, const DriveSettings& settings,
                      TrajectoryPtr trajectory)
-    : model_(&model),
-      settings_(settings),
-      fusion_(make_onboard_fusion(model.geometry(), settings.fusion)),
+    : settings_(settings),
+      geometry_(settings.geometry.value_or(model.geometry())),
+      fusion_(make_onboard_fusion(geometry_, settings.fusion)),
       safety_(settings.safety),
       plan_(model, settings.control, settings.plan, std::move(trajectory)),
       loop_(model, settings.control) {
@@ -97,7 +97,7 @@ const tracker::WireWheelCommand& DriveCore::step(Timestamp now, std::int64_t per
   if (has_ticked_) tick(ticks);
   const double dt_s = static_cast<double>(periods) * settings_.control.inner_step_s();
   command_.wheels = {};
-  command_.wheels.count = static_cast<std::size_t>(model_->wheel_count());
+  command_.wheels.count = static_cast<std::size_t>(geometry_.wheels());
   if (motors_are_off()) {
     loop_.restart_inner();
   } else if (settings_.output == WheelCommandKind::kVolts) {
@@ -126,7 +126,7 @@ void DriveCore::fill_command() {
   command_.kind = settings_.output;
   command_.body_rates = {rates.x(), rates.y(), rates.z()};
   if (settings_.output == WheelCommandKind::kRimSpeeds) {
-    const WheelVector rims = model_->geometry().rim_speeds_mps(fusion::BodyRates::from(rates));
+    const WheelVector rims = geometry_.rim_speeds_mps(fusion::BodyRates::from(rates));
     for (int i = 0; i < rims.size(); ++i)
       command_.wheels.values.at(static_cast<std::size_t>(i)) = rims(i);
   }
@@ -162,7 +162,11 @@ void DriveCore::tick(std::int64_t ticks) {
 
 void DriveCore::follow(double dt_s) {
   plan_.advance(dt_s, verdict().pace);
-  loop_.tick(estimate_->pose, plan_.motion(), dt_s);
+  if (settings_.steering) {
+    loop_.tick_at(settings_.steering->body_rates(estimate_->pose, plan_.motion(), dt_s));
+  } else {
+    loop_.tick(estimate_->pose, plan_.motion(), dt_s);
+  }
 }
 
 SafetyView DriveCore::view() const {

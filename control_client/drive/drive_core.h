@@ -11,6 +11,7 @@
 #include "control_client/drive/odometry_merger.h"
 #include "control_client/drive/onboard_fusion.h"
 #include "control_client/drive/safety.h"
+#include "control_client/drive/steering.h"
 #include "control_client/drive/tracker_clocks.h"
 #include "tracker/wire/client_state.h"
 #include "tracker/wire/clock_exchange.h"
@@ -31,6 +32,8 @@ struct DriveSettings {
   PlanSettings plan;
   OnboardFusionSettings fusion;
   SafetySettings safety;
+  std::optional<fusion::WheelGeometry> geometry;  ///< other wheels than the model's
+  std::shared_ptr<Steering> steering;             ///< in place of the outer loop; null: none
 };
 
 /// What became of a pose from the network.
@@ -81,8 +84,8 @@ class DriveCore {
   void fill_command();
   double largest_position_sigma_m() const;
 
-  const RobotModel* model_;
   DriveSettings settings_;
+  fusion::WheelGeometry geometry_;
   std::unique_ptr<OnboardFusion> fusion_;
   TrackerClocks clocks_;
   OdometryMerger merger_;

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
 
 #include "control_client/drive/dds_base.h"
-#include "control_client/drive/simulated_base.h"
 
 namespace nadir::control_client {
 
@@ -24,17 +24,26 @@ DriveSettings settings_of(const DriveConfig& config, const DriveTask& task, std:
   settings.epoch = epoch;
   settings.output = config.output;
   settings.command_valid_for = fusion::from_seconds(config.command_valid_s);
-  settings.control = task.robot_config.control;
+  settings.control = task.body.config.control;
   // Robots whose firmware closes the inner loop need a command at each tick only.
   if (config.output != tracker::WheelCommandKind::kVolts) settings.control.inner_steps = 1;
   settings.plan = config.plan;
   settings.fusion = config.fusion;
   settings.safety = config.safety;
+  settings.geometry = task.body.geometry;
+  settings.steering = task.body.steering;
+  settings.plan.moves_sideways = task.body.moves_sideways;
+  constexpr double kReserve = 0.9;  // the rest is the controller's
+  const RobotParameters& robot = task.body.config.robot;
+  MotionLimits& approach = settings.plan.approach;
+  approach.speed_mps = std::min(approach.speed_mps, kReserve * robot.max_speed_mps);
+  approach.turn_rate_radps =
+      std::min(approach.turn_rate_radps, kReserve * robot.max_turn_rate_radps);
   return settings;
 }
 
 Timestamp period_of(const DriveConfig& config, const DriveTask& task) {
-  const ControlParameters& control = task.robot_config.control;
+  const ControlParameters& control = task.body.config.control;
   const bool has_inner = config.output == tracker::WheelCommandKind::kVolts;
   return fusion::from_seconds(has_inner ? control.inner_step_s() : control.tick_s);
 }
@@ -49,7 +58,7 @@ DriveProcess::DriveProcess(const DriveConfig& config, const DriveTask& task, Con
     : config_(config),
       task_(task),
       console_(std::move(console)),
-      model_(task.robot_config.robot),
+      model_(task.body.config.robot),
       clock_(config.clock_error),
       epoch_(static_cast<std::uint64_t>(tracker::system_clock_ns())),
       participant_(place_of(config)),
@@ -69,16 +78,16 @@ DriveProcess::DriveProcess(const DriveConfig& config, const DriveTask& task, Con
 
 std::unique_ptr<RobotBase> DriveProcess::make_base(const DriveConfig& config) {
   if (!task_.simulates) {
-    return std::make_unique<DdsBase>(participant_, config.team, task_.robot, model_.geometry());
+    return std::make_unique<DdsBase>(participant_, config.team, task_.robot,
+                                     task_.body.geometry.value_or(model_.geometry()));
   }
   truths_.emplace(participant_);
   SimulationSettings simulation = config.simulation;
   simulation.start = config.start.value_or(task_.trajectory->at(0.0).pose);
   // A step earlier than the first period: that finds a first report.
   const Timestamp start = clock_.at(scheduler_.next()) - fusion::from_seconds(simulation.step_s);
-  return std::make_unique<SimulatedBase>(model_, task_.robot_config.control.inner, simulation,
-                                         start,
-                                         [this](const TruthSample& truth) { publish(truth); });
+  return task_.body.simulated(simulation, start,
+                              [this](const TruthSample& truth) { publish(truth); });
 }
 
 void DriveProcess::publish(const TruthSample& truth) {

@@ -13,6 +13,7 @@
 #include "control_client/drive/drive_config.h"
 #include "control_client/drive/drive_core.h"
 #include "control_client/drive/drive_log.h"
+#include "control_client/drive/driven_robot.h"
 #include "control_client/drive/robot_base.h"
 #include "control_client/drive/state_announcer.h"
 #include "control_client/drive/tick_scheduler.h"
@@ -28,7 +29,7 @@ namespace nadir::control_client {
 struct DriveTask {
   std::int32_t robot = 0;
   TrajectoryPtr trajectory;
-  RobotConfig robot_config;
+  DrivenRobot body;
   bool simulates = false;
   std::filesystem::path log;         ///< empty: none
   std::optional<double> duration_s;  ///< nothing: until the trajectory is over

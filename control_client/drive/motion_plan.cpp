@@ -2,9 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 namespace nadir::control_client {
+namespace {
+
+// From pose to pose (x m, y m, unwrapped heading rad), by turns in place and a straight drive.
+std::vector<Eigen::Vector3d> turning_way(const Eigen::Vector3d& start,
+                                         const Eigen::Vector3d& goal) {
+  constexpr double kThere_m = 0.02;  // nearer than that, the controller's own matter
+  const Eigen::Vector2d way_m = (goal - start).head<2>();
+  if (way_m.norm() < kThere_m) return {start, goal};
+  const double turn_rad = fusion::wrap_angle(std::atan2(way_m.y(), way_m.x()) - start.z());
+  const bool is_behind = std::abs(turn_rad) > 0.5 * std::numbers::pi;
+  const double away_rad = is_behind ? fusion::wrap_angle(turn_rad + std::numbers::pi) : turn_rad;
+  // The end is the trajectory's own heading, whatever its turns.
+  const double along_rad = goal.z() + fusion::wrap_angle(start.z() + away_rad - goal.z());
+  return {{start.x(), start.y(), along_rad - away_rad},
+          {start.x(), start.y(), along_rad},
+          {goal.x(), goal.y(), along_rad},
+          goal};
+}
+
+}  // namespace
 
 MotionPlan::MotionPlan(const RobotModel& model, const ControlParameters& control,
                        const PlanSettings& settings, TrajectoryPtr trajectory)
@@ -17,11 +39,14 @@ void MotionPlan::start_from(const fusion::PlanarPose& pose) {
   const Eigen::Vector3d goal = trajectory_->at(time_s_).pose;
   const Eigen::Vector3d start(pose.x_m, pose.y_m,
                               goal.z() + fusion::wrap_angle(pose.heading_rad - goal.z()));
-  approach_ = waypoint_trajectory({start, goal}, settings_.approach);
+  const std::vector<Eigen::Vector3d> way = settings_.moves_sideways
+                                               ? std::vector<Eigen::Vector3d>{start, goal}
+                                               : turning_way(start, goal);
+  approach_ = waypoint_trajectory(way, settings_.approach);
   approach_time_s_ = 0.0;
   pace_ = 0.0;
   phase_ = Phase::kApproach;
-  motion_ = {start, Eigen::Vector3d::Zero()};
+  motion_ = {way.front(), Eigen::Vector3d::Zero()};
   command_ = motion_;
 }
 

@@ -16,6 +16,9 @@ struct PlanSettings {
   MotionLimits approach;  ///< of the way to the trajectory
   double ramp_s = 0.5;    ///< in which the pace goes from 0 to 1
   bool repeats = false;   ///< at its end the trajectory begins anew
+  /// Whether the robot can move sideways. If not, it turns towards the trajectory (or its back,
+  /// where that is less to turn), drives there, and turns along it.
+  bool moves_sideways = true;
 };
 
 /// What the robot is meant to do, tick by tick: from wherever it stands to the trajectory, along

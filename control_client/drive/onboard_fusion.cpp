@@ -64,6 +64,8 @@ std::unique_ptr<OnboardFusion> make_onboard_fusion(const fusion::WheelGeometry& 
                                              kInterval_s));
   }
   switch (geometry.wheels()) {
+    case 2:
+      return with_slip<2>(geometry, settings);
     case 3:
       return with_slip<3>(geometry, settings);
     case 4:
@@ -73,7 +75,7 @@ std::unique_ptr<OnboardFusion> make_onboard_fusion(const fusion::WheelGeometry& 
     case 6:
       return with_slip<6>(geometry, settings);
     default:
-      throw std::invalid_argument("a robot has three to six wheels");
+      throw std::invalid_argument("a robot has two to six wheels");
   }
 }
 

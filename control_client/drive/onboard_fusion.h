@@ -56,7 +56,7 @@ class OnboardFusion {
   OnboardFusion& operator=(const OnboardFusion&) = default;
 };
 
-/// The filter for a robot with these wheels (three to six), about its own estimate.
+/// The filter for a robot with these wheels (two to six), about its own estimate.
 std::unique_ptr<OnboardFusion> make_onboard_fusion(const fusion::WheelGeometry& geometry,
                                                    const OnboardFusionSettings& settings);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "control_client/robot_file.h"
 #include "tests/vision/scratch_folder.h"
 #include "vision/input/input_error.h"
 

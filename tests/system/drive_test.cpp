@@ -74,6 +74,18 @@ TEST(Drive, FollowsACircleByTheTrackersPosesWithAClockThatIsSecondsOff) {
   EXPECT_EQ(tracker.wait(kPatience), 0) << tracker.err();
 }
 
+TEST(Drive, ARobotWithTwoDrivenWheelsTurnsInItsCorners) {
+  const DriveLoop loop;
+  const ChildProcess tracker = loop.tracker();
+  ChildProcess drive =
+      loop.drive("square-along", 14.0,
+                 {"--robot-type", "differential", "--speed", "2", "--start", "-0.45,-0.4,20"});
+  ASSERT_EQ(drive.wait(kPatience), 0) << drive.err() << tracker.err();
+  errors_of(loop.record());
+  const fusion::PlanarPose end = loop.record().rows.back().truth;
+  EXPECT_GT(end.x_m, 0.4) << "it never came to its first corner";
+}
+
 TEST(Drive, GetsOverATrackerThatIsKilledAndStartedAgain) {
   const DriveLoop loop;
   ChildProcess drive = loop.drive("circle", 13.0);

@@ -65,6 +65,26 @@ TEST(DriveWrongInput, OfRobots) {
                  {"singular.yaml:1", "wheels"});
 }
 
+TEST(DriveWrongInput, OfTypesOfRobots) {
+  const std::vector<std::string> drive = {"--robot", "3", "--trajectory"};
+  const auto refused = [&](const std::vector<std::string>& more,
+                           const std::vector<std::string>& words) {
+    std::vector<std::string> all = drive;
+    all.insert(all.end(), more.begin(), more.end());
+    expect_refusal(all, words);
+  };
+  refused({"circle", "--robot-type", "hovercraft"},
+          {"'hovercraft'", "omnidirectional", "differential"});
+  refused({"circle", "--robot-type", "differential"}, {"circle", "sideways", "two-circles"});
+  refused({"two-circles", "--robot-type", "differential", "--speed", "5"},
+          {"two-circles", "times the robot's speed limit", "or slower"});
+  const vision::ScratchFolder folder;
+  const auto two = folder.write("two.yaml", "type: differential\ntrack: 0.2\n");
+  refused({"two-circles", "--robot-file", two.string()}, {"two.yaml:2", "track_m"});
+  refused({"circle", "--robot-file", two.string(), "--robot-type", "omnidirectional"},
+          {"two.yaml", "differential", "not omnidirectional"});
+}
+
 TEST(DriveWrongInput, OfTheConfiguration) {
   const vision::ScratchFolder folder;
   const auto typo = folder.write("typo.yaml", "team: blue\nsafty: {release: 0.5}\n");
