@@ -46,18 +46,29 @@ class CornerTurns : public Trajectory {
   std::vector<Corner> corners_;
 };
 
-void expect_no_sideways_motion(const std::string& name, const TrajectoryPoint& point,
-                               double time_s) {
-  constexpr double kTolerance_mps = 0.01;
-  constexpr double kTolerance = 0.1;  // share of the speed: splines are not quite along
-  const Eigen::Vector3d rates = NominalMotion{point.pose, point.velocity_per_s}.body_rates();
-  if (std::abs(rates.y()) <= std::max(kTolerance_mps, kTolerance * std::abs(rates.x()))) return;
-  throw vision::InputError(
-      {name, 0, 0},
-      fmt::format("the trajectory moves sideways at {:.2f} m/s after {:.2f} s, which a "
-                  "differential robot cannot",
-                  std::abs(rates.y()), time_s),
-      "let its heading follow its path, as two-circles does");
+// The most forbidden moment of a trajectory.
+struct SidewaysMotion {
+  double speed_mps = 0.0;
+  double time_s = 0.0;
+
+  void see(const TrajectoryPoint& point, double now_s) {
+    constexpr double kTolerance_mps = 0.01;
+    constexpr double kTolerance = 0.1;  // share of the speed: splines are not quite along
+    const Eigen::Vector3d rates = NominalMotion{point.pose, point.velocity_per_s}.body_rates();
+    const double sideways_mps = std::abs(rates.y());
+    if (sideways_mps <= std::max(kTolerance_mps, kTolerance * std::abs(rates.x()))) return;
+    if (sideways_mps <= speed_mps) return;
+    speed_mps = sideways_mps;
+    time_s = now_s;
+  }
+};
+
+void refuse(const std::string& name, const SidewaysMotion& sideways) {
+  throw vision::InputError({name, 0, 0},
+                           fmt::format("the trajectory moves sideways at {:.2f} m/s after {:.1f} "
+                                       "s, which a differential robot cannot",
+                                       sideways.speed_mps, sideways.time_s),
+                           "let its heading follow its path, as two-circles does");
 }
 
 // The heading jumps between these times.
@@ -81,17 +92,19 @@ Corner corner_between(const Trajectory& trajectory, double before_s, double afte
 TrajectoryPtr with_corner_turns(const std::string& name, TrajectoryPtr trajectory,
                                 const MotionLimits& limits) {
   std::vector<Corner> corners;
+  SidewaysMotion sideways;
   const int steps = static_cast<int>(std::floor(trajectory->duration_s() / kStep_s));
   TrajectoryPoint before = trajectory->at(0.0);
   for (int k = 0; k <= steps; ++k) {
     const double time_s = k * kStep_s;
     const TrajectoryPoint point = trajectory->at(time_s);
-    expect_no_sideways_motion(name, point, time_s);
+    sideways.see(point, time_s);
     if (std::abs(point.pose.z() - before.pose.z()) > kJump_rad) {
       corners.push_back(corner_between(*trajectory, time_s - kStep_s, time_s, limits));
     }
     before = point;
   }
+  if (sideways.speed_mps > 0.0) refuse(name, sideways);
   if (corners.empty()) return trajectory;
   return std::make_shared<CornerTurns>(std::move(trajectory), std::move(corners));
 }
