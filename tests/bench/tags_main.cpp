@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ namespace {
 using namespace nadir;
 using nadir::bench::thread_cpu_us;
 
+constexpr double kPxPerM = 420.0;
+constexpr double kSixSigma = 42.8;  // of three degrees of freedom, as likely as six of one
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 // An exact calibration: a perfect lens that looks straight down.
@@ -59,7 +62,7 @@ tracker::TagRobots tracker_of(const vision::Renderer& renderer, bool aligned) {
 }
 
 struct Errors {
-  std::uint64_t shown = 0, found = 0, wrong = 0;
+  std::uint64_t shown = 0, found = 0, wrong = 0, overconfident = 0;
   double place = 0.0, heading = 0.0, nees = 0.0;
 
   void add(const tracker::TagRobots& robots, const std::vector<vision::RobotTruth>& truth,
@@ -79,65 +82,121 @@ struct Errors {
       ++found;
       place += 0.5 * error.head<2>().squaredNorm() * px_per_m * px_per_m;
       heading += error.z() * error.z();
-      nees += error.dot(robot.pose.covariance.inverse() * error);
+      const double now = error.dot(robot.pose.covariance.inverse() * error);
+      nees += now;
+      overconfident += now > kSixSigma ? 1 : 0;
     }
   }
   double place_px() const { return std::sqrt(place / static_cast<double>(found)); }
   double heading_deg() const { return kDegrees * std::sqrt(heading / static_cast<double>(found)); }
 };
 
-nlohmann::json measure_accuracy(const std::string& name, const vision::Scene& scene, int frames) {
+// One row of the table of accuracies.
+struct AccuracyCase {
+  std::string name;
+  vision::Scene scene;
+  double speed_mps = 0.0;  // in all directions, over the exposure
+  int jpeg_quality = 0;    // 0: not compressed
+};
+
+std::vector<AccuracyCase> accuracy_cases() {
+  const vision::Scene even = flat_scene("tags_even");
+  std::vector<AccuracyCase> cases = {
+      {"even", even},        {"bayer", even}, {"dim", flat_scene("tags_dim")}, {"shadow", even},
+      {"moving", even, 1.0}, {"gamma", even}, {"JPEG", even, 0.0, 80}};
+  cases[1].scene.sensor.mosaic = vision::SceneSensor::Mosaic::kRggb;
+  cases[3].scene.light.shadow = vision::SceneShadow{.random = true};
+  cases[4].scene.sensor.exposure_s = 0.005;
+  cases[5].scene.sensor.gamma = 1.0 / 0.7;
+  return cases;
+}
+
+// New places in every frame: robots are detected, then aligned.
+vision::Frame frame_of(const AccuracyCase& which, vision::Renderer& renderer, std::uint64_t number,
+                       std::vector<vision::RobotPlacement>& robots) {
+  robots = renderer.placements(number);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    robots[i].motion.velocity_x_mps = which.speed_mps * std::cos(static_cast<double>(i));
+    robots[i].motion.velocity_y_mps = which.speed_mps * std::sin(static_cast<double>(i));
+  }
+  vision::Frame frame;
+  renderer.render_robots(number, robots, frame.image);
+  if (which.jpeg_quality > 0) {
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(".jpg", frame.image, bytes, {cv::IMWRITE_JPEG_QUALITY, which.jpeg_quality});
+    frame.image = cv::imdecode(bytes, cv::IMREAD_COLOR);
+  }
+  frame.capture_time = renderer.capture_time(number) + std::chrono::seconds(number);
+  return frame;
+}
+
+// Mean squares of position, px, and heading, rad.
+struct Bounds {
+  Eigen::Vector2d squares = Eigen::Vector2d::Zero();
+  int count = 0;
+
+  void add(const vision::Scene& scene, const vision::RobotPlacement& robot) {
+    const Eigen::Matrix3d covariance = bench::tag_bound(scene, robot);
+    squares += Eigen::Vector2d(0.5 * covariance.topLeftCorner<2, 2>().trace() * kPxPerM * kPxPerM,
+                               covariance(2, 2));
+    ++count;
+  }
+  double place_px() const { return std::sqrt(squares[0] / count); }
+  double heading_deg() const { return kDegrees * std::sqrt(squares[1] / count); }
+};
+
+nlohmann::json report_accuracy(const std::string& name, const Errors& aligned,
+                               const Errors& corners, const Bounds& bounds) {
+  const auto found = static_cast<double>(aligned.found);
+  fmt::print(
+      "{:<6} {:>5}/{:<5} wrong {}  corners {:.4f} px {:.4f} deg NEES {:.2f}  aligned {:.5f} px "
+      "{:.5f} deg  times better {:.1f} {:.1f}  over bound {:.2f} {:.2f}  NEES {:.2f}, beyond six "
+      "sigma {}\n",
+      name, aligned.found, aligned.shown, aligned.wrong + corners.wrong, corners.place_px(),
+      corners.heading_deg(), corners.nees / static_cast<double>(corners.found), aligned.place_px(),
+      aligned.heading_deg(), corners.place_px() / aligned.place_px(),
+      corners.heading_deg() / aligned.heading_deg(), aligned.place_px() / bounds.place_px(),
+      aligned.heading_deg() / bounds.heading_deg(), aligned.nees / found, aligned.overconfident);
+  std::fflush(stdout);
+  return {{"case", name},
+          {"shown", aligned.shown},
+          {"found", aligned.found},
+          {"wrong", aligned.wrong},
+          {"corners_px", corners.place_px()},
+          {"corners_deg", corners.heading_deg()},
+          {"corners_nees", corners.nees / static_cast<double>(corners.found)},
+          {"aligned_px", aligned.place_px()},
+          {"aligned_deg", aligned.heading_deg()},
+          {"bound_px", bounds.place_px()},
+          {"bound_deg", bounds.heading_deg()},
+          {"nees", aligned.nees / found},
+          {"beyond_six_sigma", aligned.overconfident}};
+}
+
+// The bound is that of the frame before it was spoilt.
+nlohmann::json measure_accuracy(const AccuracyCase& which, int frames) {
   constexpr int kLearning = 5;
-  constexpr double kPxPerM = 420.0;
-  vision::Renderer renderer(scene, 11);
+  vision::Renderer renderer(which.scene, 11);
   tracker::TagRobots aligned = tracker_of(renderer, true);
   tracker::TagRobots detected = tracker_of(renderer, false);
   Errors by_pixels, by_corners;
-  Eigen::Vector2d bound = Eigen::Vector2d::Zero();  // squares
-  int bounds = 0;
+  Bounds bounds;
+  std::vector<vision::RobotPlacement> placements;
+  std::vector<tracker::RejectionReport> rejected;
   for (int k = 0; k < frames + kLearning; ++k) {
-    const auto number = static_cast<std::uint64_t>(k);
-    vision::Frame frame;
-    renderer.render(number, frame.image);
-    frame.capture_time = renderer.capture_time(number) + std::chrono::seconds(k);
+    const vision::Frame frame =
+        frame_of(which, renderer, static_cast<std::uint64_t>(k), placements);
+    const std::vector<vision::RobotTruth> truth = renderer.truth_of(placements);
     for (tracker::TagRobots* robots : {&aligned, &detected}) {
-      std::vector<tracker::RejectionReport> rejected;
+      rejected.clear();
       robots->detect(frame);
       robots->locate(rejected);
-      if (k >= kLearning) {
-        (robots == &aligned ? by_pixels : by_corners).add(*robots, renderer.truth(number), kPxPerM);
-      }
+      if (k >= kLearning)
+        (robots == &aligned ? by_pixels : by_corners).add(*robots, truth, kPxPerM);
     }
-    if (k % 5 != 0) continue;
-    const Eigen::Matrix3d covariance =
-        bench::tag_bound(renderer.scene(), renderer.placements(number).front());
-    bound += Eigen::Vector2d(0.5 * covariance.topLeftCorner<2, 2>().trace() * kPxPerM * kPxPerM,
-                             covariance(2, 2));
-    ++bounds;
+    if (k % 5 == 0) bounds.add(renderer.scene(), placements.front());
   }
-  const double place_bound = std::sqrt(bound[0] / bounds);
-  const double heading_bound = kDegrees * std::sqrt(bound[1] / bounds);
-  const auto found = static_cast<double>(by_pixels.found);
-  fmt::print(
-      "{:<6} {:>5}/{:<5} wrong {}  corners {:.4f} px {:.4f} deg  aligned {:.5f} px {:.5f} deg  "
-      "times better {:.1f} {:.1f}  over bound {:.2f} {:.2f}  NEES {:.2f}\n",
-      name, by_pixels.found, by_pixels.shown, by_pixels.wrong + by_corners.wrong,
-      by_corners.place_px(), by_corners.heading_deg(), by_pixels.place_px(),
-      by_pixels.heading_deg(), by_corners.place_px() / by_pixels.place_px(),
-      by_corners.heading_deg() / by_pixels.heading_deg(), by_pixels.place_px() / place_bound,
-      by_pixels.heading_deg() / heading_bound, by_pixels.nees / found);
-  std::fflush(stdout);
-  return {{"case", name},
-          {"shown", by_pixels.shown},
-          {"found", by_pixels.found},
-          {"wrong", by_pixels.wrong},
-          {"corners_px", by_corners.place_px()},
-          {"corners_deg", by_corners.heading_deg()},
-          {"aligned_px", by_pixels.place_px()},
-          {"aligned_deg", by_pixels.heading_deg()},
-          {"bound_px", place_bound},
-          {"bound_deg", heading_bound},
-          {"nees", by_pixels.nees / found}};
+  return report_accuracy(which.name, by_pixels, by_corners, bounds);
 }
 
 // Twelve tags of 30, 42 and 60 px.
@@ -258,12 +317,10 @@ int main(int argc, char** argv) {
   app.add_option("--search-frames", search_frames, "in which tags are counted")
       ->check(CLI::Range(1, 1000000));
   return nadir::bench::bench_main(argc, argv, app, [&] {
-    vision::Scene bayer = flat_scene("tags_even");
-    bayer.sensor.mosaic = vision::SceneSensor::Mosaic::kRggb;
     nlohmann::json cases = nlohmann::json::array();
-    cases.push_back(measure_accuracy("even", flat_scene("tags_even"), frames));
-    cases.push_back(measure_accuracy("bayer", bayer, frames));
-    cases.push_back(measure_accuracy("dim", flat_scene("tags_dim"), frames));
+    for (const AccuracyCase& which : accuracy_cases()) {
+      cases.push_back(measure_accuracy(which, frames));
+    }
     nadir::bench::write_json_file({{"benchmark", "tags"},
                                    {"accuracy", cases},
                                    {"search", count_found(search_frames)},

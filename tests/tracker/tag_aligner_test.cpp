@@ -74,7 +74,7 @@ TEST(TagAligner, ErrorsAreAsLargeAsTheirCovariancesSay) {
                                std::to_string(side_px) + " px: " + std::to_string(errors.place_px) +
                                " px, " + std::to_string(errors.heading_deg) + " deg";
       EXPECT_EQ(errors.found, errors.shown) << name;
-      EXPECT_GT(errors.nees, side_px < 24.0 ? 1.5 : 2.0) << name;
+      EXPECT_GT(errors.nees, side_px < 24.0 ? 1.3 : 2.0) << name;
       EXPECT_LT(errors.nees, 3.8) << name;
       // The optics' 0.7 px and a pixel's own square.
       EXPECT_NEAR(errors.blur_px, std::sqrt(0.49 + 1.0 / 12.0), 0.01) << name;

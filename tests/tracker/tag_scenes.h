@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,9 @@ struct TagCamera {
 enum class TagLight { kEven, kBayer, kDim };
 
 /// `side_px`: of the tags' squares. Ten robots (five large ones), at new places in every frame.
-inline TagCamera tag_camera(double side_px, TagLight light, std::uint64_t seed) {
+/// `change`: of the scene.
+inline TagCamera tag_camera(double side_px, TagLight light, std::uint64_t seed,
+                            const std::function<void(vision::Scene&)>& change = {}) {
   const std::string folder = std::string(NADIR_DATA_DIR) + "/scenes/";
   vision::Scene scene =
       vision::load_scene(folder + (light == TagLight::kDim ? "tags_dim.yaml" : "tags_even.yaml"));
@@ -37,6 +40,7 @@ inline TagCamera tag_camera(double side_px, TagLight light, std::uint64_t seed) 
   scene.camera.centre_u_px = 319.5;
   scene.camera.centre_v_px = 255.5;
   scene.camera.focal_px = side_px / layout.tags->size_m * (scene.camera.height_m - layout.height_m);
+  if (change) change(scene);
   vision::Renderer renderer(scene, seed);
   calibration::FieldPoints points;
   for (const vision::CalibrationPoint& point :
@@ -62,6 +66,7 @@ struct TagErrors {
   double place_px = 0.0;     ///< RMS per axis
   double heading_deg = 0.0;  ///< RMS
   double nees = 0.0;         ///< mean of three degrees of freedom
+  double worst_nees = 0.0;
 };
 
 }  // namespace nadir::tracker

@@ -132,8 +132,8 @@ NADIR_INLINE void take_chord(const std::uint8_t* row, int row_bytes, const Chord
     const int u = chord.begin + first;
     bgr_run::Words words;
     bgr_run::load(row, row_bytes, u, words);
-    take_run(words, rows, static_cast<float>(u - rows.u0), dv,
-             static_cast<std::size_t>(patch.count + first), patch);
+    const int i = patch.count + first;
+    take_run(words, rows, static_cast<float>(u - rows.u0), dv, static_cast<std::size_t>(i), patch);
   }
   patch.count += count;
 }

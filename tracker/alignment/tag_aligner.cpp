@@ -17,6 +17,9 @@ constexpr double kSettled_px = 0.03;  // the step after this one would be smalle
 constexpr double kFarthest_cells = 1.2;  // from the guess
 constexpr double kFarthest_rad = 0.2;
 constexpr double kLeastPixels = 60.0;
+// Noise is each pixel's own; what else disturbs them (motion, a wrong gamma) is shared by
+// neighbours: so many err together.
+constexpr double kErrTogether = 3.0;
 constexpr double kMostBlurInformation = 5e4;  // of one tag, 1 / px^2
 
 using Step = Eigen::Matrix<double, kTagSteps, 1>;
@@ -200,7 +203,9 @@ bool TagAligner::State::finish(AlignedTag& result) {
   result.chi_square_per_dof = residual / std::max(1.0, pixels - kTagSteps - 2.0 * patch.segments);
   // Not what is chance; a third of the pixels lies at edges.
   const double chance = 2.0 * std::sqrt(6.0 / pixels);
-  const double inflation = std::max({1.0, by_edges - chance, result.chi_square_per_dof - chance});
+  const double excess =
+      std::max({0.0, by_edges - 1.0 - chance, result.chi_square_per_dof - 1.0 - chance});
+  const double inflation = 1.0 + kErrTogether * excess;
   const double cosine = std::cos(pose.heading_rad);
   const double sine = std::sin(pose.heading_rad);
   Eigen::Matrix3d world_from_step = Eigen::Matrix3d::Identity();

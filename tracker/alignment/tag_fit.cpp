@@ -12,6 +12,14 @@ using lanes::Floats;
 using lanes::Ints;
 using lanes::kLanes;
 
+// The pixels to look at after those at `i`: of blocks of eight every `stride`-th, however many
+// pixels are looked at at once. Segments begin with a block.
+NADIR_INLINE std::size_t after(std::size_t i, int stride) {
+  constexpr std::size_t kBlock = 8;
+  const std::size_t next = i + kLanes;
+  return next % kBlock == 0 ? next + kBlock * static_cast<std::size_t>(stride - 1) : next;
+}
+
 // Where pixels lie on the print, in cells from its upper left corner, and if they count.
 struct Cells {
   Floats a, b, count;
@@ -80,7 +88,7 @@ NADIR_INLINE void share_out(const Floats& place, float blur, Shares& shares) {
 }
 
 struct Template {
-  Floats value, by_a, by_b, by_blur;
+  Floats value{}, by_a{}, by_b{}, by_blur{};
 };
 
 // Sums of those shares whose cell is white, over the four cells of a row.
@@ -156,10 +164,9 @@ NADIR_INLINE void sum_cells(const TagPatch& patch, int segment, const TagTemplat
   for (int k = 0; k < kTagSteps; ++k) with_t[k] = with_r[k] = with_1[k] = Floats{};
   for (Floats& sum : pairs) sum = Floats{};
   const float middle = 0.5F * static_cast<float>(print.cells);
-  const auto stride = static_cast<std::size_t>(kLanes * weights.stride);
   const auto begin = static_cast<std::size_t>(patch.begin[static_cast<std::size_t>(segment)]);
   const auto end = static_cast<std::size_t>(patch.end[static_cast<std::size_t>(segment)]);
-  for (std::size_t i = begin; i < end; i += stride) {
+  for (std::size_t i = begin; i < end; i = after(i, weights.stride)) {
     Cells cells;
     locate(patch, i, print, place, weights.margin_cells, cells);
     Template t;
@@ -252,10 +259,9 @@ NADIR_VECTOR_CLONES
 TagLevels fit_tag_levels(const TagPatch& patch, int segment, const TagTemplate& print,
                          const TagPlace& place, const TagWeights& weights) {
   Floats n{}, t{}, tt{}, v{}, vt{};
-  const auto stride = static_cast<std::size_t>(kLanes * weights.stride);
   const auto begin = static_cast<std::size_t>(patch.begin[static_cast<std::size_t>(segment)]);
   const auto end = static_cast<std::size_t>(patch.end[static_cast<std::size_t>(segment)]);
-  for (std::size_t i = begin; i < end; i += stride) {
+  for (std::size_t i = begin; i < end; i = after(i, weights.stride)) {
     Cells cells;
     locate(patch, i, print, place, weights.margin_cells, cells);
     Template now;

@@ -116,8 +116,9 @@ NADIR_INLINE int place_chord(const PlaneGrid& grid, const Eigen::Vector2d& from_
       const Values du = steps + static_cast<float>(u - middle);
       const Values x = x0 + du * (x1 + du * x2);
       const Values y = y0 + du * (y1 + du * y2);
-      std::memcpy(&patch.x_m[static_cast<std::size_t>(at + count)], &x, sizeof(x));
-      std::memcpy(&patch.y_m[static_cast<std::size_t>(at + count)], &y, sizeof(y));
+      const int i = at + count;
+      std::memcpy(&patch.x_m[static_cast<std::size_t>(i)], &x, sizeof(x));
+      std::memcpy(&patch.y_m[static_cast<std::size_t>(i)], &y, sizeof(y));
       count += std::min(kRun, (end - u + step - 1) / step);
     }
   }
@@ -160,8 +161,8 @@ int gather_channel(const cv::Mat& image, Mosaic mosaic, int channel, const Plane
   for (int v = range.begin; v < range.end; v += range.step) {
     Chord chord = chord_of(rows, v, image.cols);
     if (channel >= 0) {
-      const std::array<int, 2> here = {native[static_cast<std::size_t>(2 * (v & 1))],
-                                       native[static_cast<std::size_t>(2 * (v & 1) + 1)]};
+      const std::size_t first = (v & 1) == 0 ? 0 : 2;
+      const std::array<int, 2> here = {native[first], native[first + 1]};
       if (here[0] != channel && here[1] != channel) continue;
       if (here[static_cast<std::size_t>(chord.begin & 1)] != channel) ++chord.begin;
     }
