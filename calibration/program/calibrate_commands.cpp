@@ -2,7 +2,6 @@
 
 #include <sstream>
 
-
 namespace nadir::calibration {
 
 CLI::Validator number_from_to(double low, double high) {

@@ -1,5 +1,3 @@
-#include "calibration/noise_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "calibration/noise_file.h"
 #include "tests/vision/input_error_line.h"
 #include "tests/vision/scratch_folder.h"
 
