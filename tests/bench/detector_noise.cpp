@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <numbers>
 
 #include "calibration/noise_file.h"
@@ -31,18 +32,23 @@ vision::Scene seen_from(vision::Scene scene, double expected_pixels) {
 }
 
 /// A pipeline for each law.
-std::vector<tracker::CameraPipeline> pipelines(const vision::Scene& scene,
-                                               const std::filesystem::path& table_file) {
+std::deque<tracker::CameraPipeline> pipelines(const vision::Scene& scene,
+                                              const std::filesystem::path& table_file) {
   tracker::PipelineSetup setup{.camera = "cam0",
                                .calibration = support::calibrate_from_scene(scene, kSeed),
                                .calibration_file = "scene",
                                .layouts = scene.layouts};
-  std::vector<tracker::CameraPipeline> made;
-  made.emplace_back(setup, scene.camera.width_px, scene.camera.height_px);
-  setup.variance = calibration::PixelCountVariance(calibration::LawVariance{});
-  made.emplace_back(setup, scene.camera.width_px, scene.camera.height_px);
-  setup.variance = calibration::load_pixel_count_variance(table_file);
-  made.emplace_back(setup, scene.camera.width_px, scene.camera.height_px);
+  using Source = tracker::PoseSource;
+  std::deque<tracker::CameraPipeline> made;  // they cannot be moved
+  const auto make = [&](Source source, const calibration::PixelCountVariance& variance) {
+    setup.source = source;
+    setup.variance = variance;
+    made.emplace_back(setup, scene.camera.width_px, scene.camera.height_px);
+  };
+  make(Source::kAlignment, {});
+  make(Source::kAlignedAndCounts, calibration::PixelCountVariance(calibration::LawVariance{}));
+  make(Source::kAlignedAndCounts, calibration::load_pixel_count_variance(table_file));
+  make(Source::kDetector, {});
   return made;
 }
 
@@ -73,17 +79,29 @@ void divide(PoseVariance& sum, double count) {
   sum.heading_rad2 /= count;
 }
 
+Eigen::Vector3d error_of(const tracker::RobotReport& robot, const vision::RobotTruth& truth) {
+  return fusion::pose_difference(robot.pose_world_robot, {truth.x_m, truth.y_m, truth.heading_rad});
+}
+
 /// Sums over robots; made means by finish().
 void add_robot(const tracker::RobotReport& robot, const vision::RobotTruth& truth,
                CountNoise& noise) {
-  const Eigen::Vector3d error =
-      fusion::pose_difference(robot.pose_world_robot, {truth.x_m, truth.y_m, truth.heading_rad});
+  const Eigen::Vector3d error = error_of(robot, truth);
   ++noise.found;
   noise.pixels += robot.pixels[0];
   noise.x_m2 += error.x() * error.x();
   noise.y_m2 += error.y() * error.y();
   noise.measured.heading_rad2 += error.z() * error.z();
-  noise.nees += error.dot(robot.covariance.ldlt().solve(error));
+}
+
+void add_published(const tracker::RobotReport& robot, const vision::RobotTruth& truth,
+                   std::size_t law, CountNoise& noise) {
+  const Eigen::Vector3d error = error_of(robot, truth);
+  add(noise.published[law], published(robot.covariance));
+  noise.nees[law] += error.dot(robot.covariance.ldlt().solve(error));
+  ++noise.published_robots[law];
+  if (law != kDetectorLaw) return;
+  add(noise.measured_detector, {0.5 * error.head<2>().squaredNorm(), error.z() * error.z()});
 }
 
 void finish(CountNoise& noise) {
@@ -93,16 +111,17 @@ void finish(CountNoise& noise) {
   noise.y_m2 /= count;
   noise.measured.heading_rad2 /= count;
   noise.measured.place_m2 = 0.5 * (noise.x_m2 + noise.y_m2);
-  noise.nees /= count;
   for (std::size_t law = 0; law < noise.published.size(); ++law) {
     divide(noise.published[law], noise.published_robots[law]);
+    noise.nees[law] /= noise.published_robots[law];
   }
+  divide(noise.measured_detector, noise.published_robots[kDetectorLaw]);
 }
 
 CountNoise study_one(const vision::Scene& scene, double expected_pixels, int frames,
                      const std::filesystem::path& table_file) {
   vision::Renderer renderer(scene, kSeed);
-  std::vector<tracker::CameraPipeline> laws = pipelines(scene, table_file);
+  std::deque<tracker::CameraPipeline> laws = pipelines(scene, table_file);
   const double radius_px = std::sqrt(expected_pixels / std::numbers::pi);
   CountNoise noise;
   noise.expected_pixels = expected_pixels;
@@ -124,9 +143,7 @@ CountNoise study_one(const vision::Scene& scene, double expected_pixels, int fra
       add_robot(*robot, truth, noise);
       for (std::size_t law = 0; law < laws.size(); ++law) {
         const auto* same = nearest(reports[law], truth, kMatchRadii * radius_px);
-        if (same == nullptr) continue;
-        add(noise.published[law], published(same->covariance));
-        ++noise.published_robots[law];
+        if (same != nullptr) add_published(*same, truth, law, noise);
       }
     }
     noise.false_robots += static_cast<int>(reports[0].robots.size()) - (noise.found - found_before);

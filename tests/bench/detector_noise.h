@@ -11,11 +11,13 @@ namespace nadir::bench {
 
 // How well robots with two marks are placed against the number of pixels that show a mark: the same
 // scene from cameras near and far, whose calibration is exact (no tilt, no distortion), so that
-// nothing but the detector errs.
+// nothing but the measurement errs.
 
-/// The laws that turn pixel counts into published variances, in the order of
-/// CountNoise::published.
-inline constexpr std::array<const char*, 3> kVarianceLaws = {"default", "law", "table"};
+/// What is published as variance, as --variance says: of aligned poses the Fisher information, a
+/// law of pixel counts, a table of them; of the detector's poses the variance in the discs' pixels.
+/// In the order of CountNoise::published.
+inline constexpr std::array<const char*, 4> kVarianceLaws = {"fisher", "law", "table", "pixels"};
+inline constexpr std::size_t kDetectorLaw = 3;
 
 /// Of a place, mean of the x and the y axis, and of the heading.
 struct PoseVariance {
@@ -33,11 +35,12 @@ struct CountNoise {
   double pixels = 0.0;   ///< counted of the centre mark, mean
   double x_m2 = 0.0;     ///< mean squared error of each axis
   double y_m2 = 0.0;
-  PoseVariance measured;
+  PoseVariance measured;           ///< of aligned poses
+  PoseVariance measured_detector;  ///< of the detector's
   /// Mean of what is published for the robots found; a law may take fewer for a measurement.
   std::array<PoseVariance, kVarianceLaws.size()> published;
   std::array<int, kVarianceLaws.size()> published_robots{};
-  double nees = 0.0;  ///< of the default law, mean; 3 if the covariance holds
+  std::array<double, kVarianceLaws.size()> nees{};  ///< means; 3 if the covariance holds
 
   double found_share() const { return static_cast<double>(found) / robots; }
   double place_px2() const { return measured.place_m2 * pixels_per_metre * pixels_per_metre; }

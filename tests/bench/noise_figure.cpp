@@ -17,6 +17,7 @@ constexpr double kMostPixels = 260.0;
 constexpr const char* kPapersColour = "#777777";
 constexpr const char* kLawColour = "#a06cb8";
 constexpr std::array<const char*, 2> kStudyColours = {"#0b62a4", "#d1571b"};
+constexpr std::array<const char*, 2> kDetectorColours = {"#7fb2d8", "#eba886"};
 
 /// One number of a variance: the panel's.
 using Part = double PoseVariance::*;
@@ -49,13 +50,15 @@ PlotSeries law_series(const NoiseStudy& study, Part part) {
   return series;
 }
 
-void add_study(const NoiseStudy& study, Part part, const char* colour,
+/// Rings: measured. Solid: published by one of the laws.
+void add_study(const NoiseStudy& study, Part part, std::size_t law, const char* colour,
                std::vector<PlotSeries>& all) {
   PlotSeries published{Kind::kCurve, colour, {}, {}};
   PlotSeries measured{Kind::kRings, colour, {}, {}};
   for (const CountNoise& count : study.counts) {
-    published.points.push_back({count.pixels, count.published[0].*part});
-    measured.points.push_back({count.pixels, count.measured.*part});
+    const PoseVariance& errors = law == kDetectorLaw ? count.measured_detector : count.measured;
+    published.points.push_back({count.pixels, count.published[law].*part});
+    measured.points.push_back({count.pixels, errors.*part});
   }
   all.push_back(std::move(published));
   all.push_back(std::move(measured));
@@ -65,12 +68,14 @@ void add_study(const NoiseStudy& study, Part part, const char* colour,
 void name_studies(const std::vector<NoiseStudy>& studies, PlotPanel& panel) {
   const double line = std::pow(panel.y_to / panel.y_from, 0.055);
   double y = panel.y_from * std::pow(line, 0.6);
-  for (std::size_t i = 0; i < studies.size(); ++i, y *= line) {
+  const auto name = [&](const std::string& text, const char* colour) {
     const PlotPoint ring{1.14 * kFewestPixels, y * std::pow(line, 0.25)};
-    panel.series.push_back({Kind::kRings,
-                            kStudyColours.at(i),
-                            {ring},
-                            {{studies[i].sensor, {1.08 * ring.x, y}, "start"}}});
+    panel.series.push_back({Kind::kRings, colour, {ring}, {{text, {1.08 * ring.x, y}, "start"}}});
+    y *= line;
+  };
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    name("aligned, " + studies[i].sensor, kStudyColours.at(i));
+    name("detected, " + studies[i].sensor, kDetectorColours.at(i));
   }
 }
 
@@ -84,11 +89,12 @@ PlotPanel panel(const std::vector<NoiseStudy>& studies, const calibration::Table
   made.x_from = kFewestPixels;
   made.x_to = kMostPixels;
   made.x_ticks = {5, 10, 20, 30, 40, 100, 200};
-  made.y_from = place ? 1e-10 : 1e-7;
+  made.y_from = place ? 1e-13 : 1e-10;
   made.y_to = place ? 1e-4 : 1.0;
   made.series = {papers_series(papers, part), law_series(studies.front(), part)};
   for (std::size_t i = 0; i < studies.size(); ++i) {
-    add_study(studies[i], part, kStudyColours.at(i), made.series);
+    add_study(studies[i], part, kDetectorLaw, kDetectorColours.at(i), made.series);
+    add_study(studies[i], part, 0, kStudyColours.at(i), made.series);
   }
   name_studies(studies, made);
   return made;

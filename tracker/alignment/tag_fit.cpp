@@ -239,7 +239,8 @@ TagTemplate::TagTemplate(const vision::TagPattern& pattern) : cells(pattern.cell
       const int row = std::clamp(j, 0, cells - 1);
       if (pattern.is_white(column, row)) bits |= 1 << (i + kBeyond);
     }
-    rows[static_cast<std::size_t>(j + kBeyond)] = bits;
+    const int index = j + kBeyond;
+    rows[static_cast<std::size_t>(index)] = bits;
   }
 }
 
