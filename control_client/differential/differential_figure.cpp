@@ -16,19 +16,11 @@ constexpr double kLeft = 62.0;
 constexpr double kGap = 84.0;
 constexpr std::size_t kMostDrawn = 4;
 constexpr std::size_t kDrawnTick = 5;  // one of so many
-constexpr const char* kStyle = R"(<style>
-text { font-family: "DejaVu Sans", Verdana, Helvetica, Arial, sans-serif; font-size: 12px; fill: #222; }
-.title { font-size: 13px; font-weight: bold; }
-.note { font-size: 11px; fill: #555; }
-.frame { fill: none; stroke: #444; }
-.grid { stroke: #e6e6e6; }
-path { fill: none; stroke-linejoin: round; stroke-linecap: round; stroke-width: 1.5; }
-.reference { stroke: #999; stroke-width: 4; opacity: 0.5; }
+constexpr const char* kStyle = R"(.reference { stroke: #999; stroke-width: 4; opacity: 0.5; }
 .c0 { stroke: #1668b5; }
 .c1 { stroke: #3b8f4a; }
 .c2 { stroke: #d1493f; }
 .c3 { stroke: #d98a00; }
-</style>
 )";
 
 using Results = std::vector<const DifferentialResult*>;
@@ -123,13 +115,9 @@ std::string differential_figure(const std::vector<DifferentialResult>& results,
   const Results drawn = drawn_results(results, look);
   constexpr double kWidth = kLeft + kField + kGap + kTimes + 24.0;
   constexpr double kHeight = kTop + kField + 84.0;
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n{2}"
-      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      kWidth, kHeight, kStyle);
-  if (!drawn.empty()) out += draw_field(drawn) + draw_errors(drawn) + legend(drawn, kHeight - 20.0);
-  return out + "</svg>\n";
+  if (drawn.empty()) return svg_page(kWidth, kHeight, kStyle, "");
+  return svg_page(kWidth, kHeight, kStyle,
+                  draw_field(drawn) + draw_errors(drawn) + legend(drawn, kHeight - 20.0));
 }
 
 }  // namespace nadir::control_client

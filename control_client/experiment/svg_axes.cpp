@@ -115,4 +115,21 @@ std::string SvgAxes::dot(const Eigen::Vector2d& point, double radius,
       x(point.x()), y(point.y()), radius, look, id_);
 }
 
+std::string svg_page(double width, double height, const std::string& style,
+                     const std::string& content) {
+  constexpr const char* kStyle =
+      R"(text { font-family: "DejaVu Sans", Verdana, Helvetica, Arial, sans-serif; font-size: 12px; fill: #222; }
+.title { font-size: 13px; font-weight: bold; }
+.note { font-size: 11px; fill: #555; }
+.frame { fill: none; stroke: #444; }
+.grid { stroke: #e6e6e6; }
+path { fill: none; stroke-linejoin: round; stroke-linecap: round; stroke-width: 1.5; }
+)";
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n<style>\n{2}{3}</style>\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{4}</svg>\n",
+      width, height, kStyle, style, content);
+}
+
 }  // namespace nadir::control_client

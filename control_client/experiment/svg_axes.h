@@ -50,4 +50,9 @@ std::vector<double> round_ticks(double from, double to, int count);
 
 std::string svg_text(double x, double y, const std::string& text, const std::string& attributes);
 
+/// A whole figure with a white ground, in the look of all experiments. `style`: further lines of
+/// its style sheet, each with its end.
+std::string svg_page(double width, double height, const std::string& style,
+                     const std::string& content);
+
 }  // namespace nadir::control_client

@@ -13,20 +13,12 @@ constexpr double kField = 420.0;
 constexpr double kTimes = 520.0;
 constexpr double kTop = 60.0;
 constexpr double kLeft = 62.0;
-constexpr const char* kStyle = R"(<style>
-text { font-family: "DejaVu Sans", Verdana, Helvetica, Arial, sans-serif; font-size: 12px; fill: #222; }
-.title { font-size: 13px; font-weight: bold; }
-.note { font-size: 11px; fill: #555; }
-.frame { fill: none; stroke: #444; }
-.grid { stroke: #e6e6e6; }
-path { fill: none; stroke-linejoin: round; stroke-linecap: round; stroke-width: 1.5; }
-.c0 { stroke: #d1493f; }
+constexpr const char* kStyle = R"(.c0 { stroke: #d1493f; }
 .c1 { stroke: #d98a00; }
 .c2 { stroke: #1668b5; }
 .c3 { stroke: #3b8f4a; }
 .landmark { fill: #222; }
 .way { fill: none; stroke: #a02060; stroke-width: 1.4; }
-</style>
 )";
 
 /// The cases that are drawn, in the order of their colours.
@@ -95,13 +87,9 @@ std::string rover_figure(const RoverWorld& world, const std::vector<RoverCase>& 
   const std::vector<const RoverCase*> drawn = drawn_cases(cases);
   constexpr double kWidth = kLeft + kField + 84.0 + kTimes + 24.0;
   constexpr double kHeight = kTop + kField + 100.0;
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n{2}"
-      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      kWidth, kHeight, kStyle);
-  out += draw_field(world, drawn) + draw_times(world, drawn) + legend(drawn, kHeight - 36.0);
-  return out + "</svg>\n";
+  return svg_page(
+      kWidth, kHeight, kStyle,
+      draw_field(world, drawn) + draw_times(world, drawn) + legend(drawn, kHeight - 36.0));
 }
 
 }  // namespace nadir::control_client
