@@ -200,7 +200,6 @@ void EkfSlam<OdometryError, SensorError>::correct_by_used(std::span<const Sighti
 template <OdometryErrorModel OdometryError, SensorErrorModel SensorError>
 void EkfSlam<OdometryError, SensorError>::apply(int rank) {
   // S = L L^T, Y = P H^T L^-T, x+ = x + Y L^-1 v, P+ = P - Y Y^T; only L's half of S is read.
-  auto panel = covariance_.panel(rank);
   auto& s = innovation_covariance_;
   for (int k = 0; k < rank; ++k) {
     for (int j = 0; j < k; ++j) {
@@ -212,9 +211,9 @@ void EkfSlam<OdometryError, SensorError>::apply(int rank) {
     assert(s(k, k) > 0.0);
     s(k, k) = std::sqrt(s(k, k));
     innovation_[k] /= s(k, k);
-    for (int j = 0; j < k; ++j) panel.col(k) -= s(k, j) * panel.col(j);
-    panel.col(k) /= s(k, k);
   }
+  covariance_.divide_panel(rank, s);
+  const auto panel = covariance_.panel(rank);
   const int n = covariance_.size();
   auto change = change_.head(n);
   change.setZero();

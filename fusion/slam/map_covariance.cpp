@@ -1,22 +1,63 @@
 #include "fusion/slam/map_covariance.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cstddef>
 
 namespace nadir::fusion {
 namespace {
 
-// Four columns at a time: out += a0 b0 + a1 b1 + a2 b2 + a3 b3, element by element in this order,
-// so that vector instructions of any width give the same bits.
-void add_four(double* out, Eigen::Index n, const double* a0, const double* a1, const double* a2,
-              const double* a3, const double* b) {
+// Compiled twice, for processors with and without AVX2; which one runs is decided at start-up. Not
+// where the compiler cannot do it or where the address sanitizer starts too late for it. Multiply
+// and add stay two roundings (-ffp-contract=off), so both give the same bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 && \
+    !defined(__SANITIZE_ADDRESS__)
+#define NADIR_TWO_WIDTHS __attribute__((target_clones("arch=x86-64-v3", "default")))
+#else
+#define NADIR_TWO_WIDTHS
+#endif
+
+// Two columns of P, which share what is read of four columns of the panel, `stride` apart:
+//     p += a0 w0 + a1 w1 + a2 w2 + a3 w3,   q += a0 v0 + a1 v1 + a2 v2 + a3 v3
+// element by element in this order, so that vectors of any width give the same bits.
+NADIR_TWO_WIDTHS void add_four_to_two(double* __restrict p, double* __restrict q, Eigen::Index n,
+                                      const double* __restrict a, Eigen::Index stride,
+                                      const double* __restrict w, const double* __restrict v) {
+  const double* __restrict a1 = a + stride;
+  const double* __restrict a2 = a1 + stride;
+  const double* __restrict a3 = a2 + stride;
   for (Eigen::Index i = 0; i < n; ++i) {
-    out[i] = out[i] + (((a0[i] * b[0] + a1[i] * b[1]) + a2[i] * b[2]) + a3[i] * b[3]);
+    p[i] = p[i] + (((a[i] * w[0] + a1[i] * w[1]) + a2[i] * w[2]) + a3[i] * w[3]);
+    q[i] = q[i] + (((a[i] * v[0] + a1[i] * v[1]) + a2[i] * v[2]) + a3[i] * v[3]);
   }
 }
 
-void add_one(double* out, Eigen::Index n, const double* a, double b) {
-  for (Eigen::Index i = 0; i < n; ++i) out[i] = out[i] + a[i] * b;
+// One column and four of the panel.
+NADIR_TWO_WIDTHS void add_four(double* __restrict p, Eigen::Index n, const double* __restrict a,
+                               Eigen::Index stride, const double* __restrict w) {
+  const double* __restrict a1 = a + stride;
+  const double* __restrict a2 = a1 + stride;
+  const double* __restrict a3 = a2 + stride;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    p[i] = p[i] + (((a[i] * w[0] + a1[i] * w[1]) + a2[i] * w[2]) + a3[i] * w[3]);
+  }
+}
+
+// Two columns of P and two of the panel.
+NADIR_TWO_WIDTHS void add_two_to_two(double* __restrict p, double* __restrict q, Eigen::Index n,
+                                     const double* __restrict a, Eigen::Index stride,
+                                     const double* __restrict w, const double* __restrict v) {
+  const double* __restrict a1 = a + stride;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    p[i] = p[i] + (a[i] * w[0] + a1[i] * w[1]);
+    q[i] = q[i] + (a[i] * v[0] + a1[i] * v[1]);
+  }
+}
+
+NADIR_TWO_WIDTHS void add_one(double* __restrict p, Eigen::Index n, const double* __restrict a,
+                              double w) {
+  for (Eigen::Index i = 0; i < n; ++i) p[i] = p[i] + a[i] * w;
 }
 
 }  // namespace
@@ -24,12 +65,12 @@ void add_one(double* out, Eigen::Index n, const double* a, double b) {
 MapCovariance::MapCovariance(int head, int landmarks, int most_rank)
     : head_(head), capacity_(landmarks), most_rank_(most_rank) {
   const Eigen::Index n = head + 2 * landmarks;
-  data_ = Eigen::MatrixXd::Zero(n, n);
+  data_ = Eigen::MatrixXd::Zero(n, n + 1);
   transition_ = Eigen::MatrixXd::Identity(head, head);
   scratch_ = Eigen::MatrixXd::Zero(head, head);
   panel_ =
       Eigen::MatrixXd::Zero(n, std::max(head, most_rank + 2));  // also holds the head's columns
-  weights_ = Eigen::MatrixXd::Zero(most_rank + 2, n);
+  weights_ = Eigen::MatrixXd::Zero(most_rank + 2, n + 1);
 }
 
 void MapCovariance::restart(const Eigen::Ref<const Eigen::MatrixXd>& head_covariance) {
@@ -127,6 +168,21 @@ void MapCovariance::add_landmark_columns(int landmark,
   }
 }
 
+void MapCovariance::divide_panel(int rank, const Eigen::Ref<const Eigen::MatrixXd>& lower) {
+  const Eigen::Index n = size();
+  std::array<double, 4> w{};
+  for (int k = 0; k < rank; ++k) {
+    double* column = panel_.col(k).data();
+    int j = 0;
+    for (; j + 4 <= k; j += 4) {
+      for (int l = 0; l < 4; ++l) w[static_cast<std::size_t>(l)] = -lower(k, j + l);
+      add_four(column, n, panel_.col(j).data(), panel_.outerStride(), w.data());
+    }
+    for (; j < k; ++j) add_one(column, n, panel_.col(j).data(), -lower(k, j));
+    panel_.col(k).head(n) *= 1.0 / lower(k, k);
+  }
+}
+
 void MapCovariance::subtract(int rank, int heading, const Eigen::Ref<const Eigen::VectorXd>& lean) {
   assert(rank <= most_rank_);
   const Eigen::Index n = size();
@@ -142,17 +198,30 @@ void MapCovariance::subtract(int rank, int heading, const Eigen::Ref<const Eigen
   add_one(q.data(), n, lean.data(), 0.5 * variance);
   weights_.row(rank).head(n) = q.transpose();
   weights_.row(rank + 1).head(n) = lean.transpose();
-  const int columns = rank + 2;
-  for (Eigen::Index j = 0; j < n; ++j) {
+  add_weighted_panel(rank + 2);
+}
+
+void MapCovariance::add_weighted_panel(int columns) {
+  // Two columns of P at a time, from the diagonal down. What the second one gets above the diagonal
+  // is never read; after an odd number of columns comes one that nobody uses.
+  const Eigen::Index n = size();
+  const Eigen::Index stride = panel_.outerStride();
+  for (Eigen::Index j = 0; j < n; j += 2) {
     const Eigen::Index from = j < head_ ? 0 : j;
-    double* out = &data_(from, j);
-    const double* weight = weights_.col(j).data();
+    const Eigen::Index rows = n - from;
+    double* p = &data_(from, j);
+    double* q = &data_(from, j + 1);
+    const double* w = weights_.col(j).data();
+    const double* v = weights_.col(j + 1).data();
     int k = 0;
-    for (; k + 4 <= columns; k += 4) {
-      add_four(out, n - from, &panel_(from, k), &panel_(from, k + 1), &panel_(from, k + 2),
-               &panel_(from, k + 3), weight + k);
+    for (; k + 4 <= columns; k += 4)
+      add_four_to_two(p, q, rows, &panel_(from, k), stride, w + k, v + k);
+    for (; k + 2 <= columns; k += 2)
+      add_two_to_two(p, q, rows, &panel_(from, k), stride, w + k, v + k);
+    for (; k < columns; ++k) {
+      add_one(p, rows, &panel_(from, k), w[k]);
+      add_one(q, rows, &panel_(from, k), v[k]);
     }
-    for (; k < columns; ++k) add_one(out, n - from, &panel_(from, k), weight[k]);
   }
 }
 

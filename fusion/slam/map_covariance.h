@@ -51,11 +51,16 @@ class MapCovariance {
   void add_landmark_columns(int landmark, const Eigen::Ref<const Eigen::Matrix2d>& factor,
                             int first);
 
+  /// Panel = panel * lower^-T, for its first `rank` columns; of `lower` the lower triangle is read.
+  void divide_panel(int rank, const Eigen::Ref<const Eigen::MatrixXd>& lower);
+
   /// P -= Y Y^T for the first `rank` columns Y of the panel, and then P = A P A^T with
   /// A = I + a e^T, where e picks the head's state `heading`; a (`lean`) is zero there.
   void subtract(int rank, int heading, const Eigen::Ref<const Eigen::VectorXd>& lean);
 
  private:
+  /// P += the panel's first columns times their weights.
+  void add_weighted_panel(int columns);
   Eigen::Index row(int landmark) const { return head_ + 2 * landmark; }
 
   int head_;
