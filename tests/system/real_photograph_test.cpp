@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
@@ -59,16 +61,20 @@ std::vector<TrueRobot> read_truth() {
   return truth;
 }
 
-tracker::CameraPipeline pipeline_for(const cv::Mat& image) {
+tracker::PipelineSetup setup_at_height(double height_m) {
   const auto points = calibration::load_field_points(kFolder / "points.csv");
   calibration::Calibration calibration{calibration::fit_polynomial2(points, {}).map};
   calibration.points_box = calibration::pixel_box(points);
-  tracker::PipelineSetup setup{
+  calibration.height_m = height_m;
+  return {
       .camera = "photo",
       .calibration = calibration,
       .calibration_file = kFolder / "points.csv",
       .layouts = {vision::load_marker_layout(fs::path(NADIR_DATA_DIR) / "layouts/league.yaml")}};
-  return {std::move(setup), image.cols, image.rows};
+}
+
+tracker::CameraPipeline pipeline_for(const cv::Mat& image) {
+  return {setup_at_height(0.0), image.cols, image.rows};
 }
 
 double difference_deg(double a_deg, double b_deg) {
@@ -139,6 +145,51 @@ TEST_F(RealPhotograph, AllSixRobotsHalfAsBrightWarmAndCompressedAtOnce) {
   std::vector<unsigned char> bytes;
   cv::imencode(".jpg", tinted(image_ * 0.5, 0.8, 1.2), bytes, {cv::IMWRITE_JPEG_QUALITY, 60});
   expect_all_six(cv::imdecode(bytes, cv::IMREAD_COLOR));
+}
+
+// Without truth this much can be asked: poses aligned with the pixels must scatter less under noise
+// of a sensor than they say of themselves.
+TEST_F(RealPhotograph, NoiseMovesAlignedRobotsLessThanTheirCovarianceSays) {
+  constexpr int kKnown = 40;  // looks until the camera is learnt
+  constexpr int kNoisy = 30;
+  const double marks_height_m =
+      vision::load_marker_layout(fs::path(NADIR_DATA_DIR) / "layouts/league.yaml").height_m;
+  tracker::CameraPipeline pipeline(setup_at_height(marks_height_m), image_.cols, image_.rows);
+  struct Poses {
+    std::vector<Eigen::Vector3d> seen;
+    Eigen::Vector3d variance = Eigen::Vector3d::Zero();
+  };
+  std::map<int, Poses> robots;
+  cv::RNG random(3);
+  cv::Mat noise(image_.size(), CV_16SC3);
+  vision::Frame frame;
+  tracker::FrameReport report;
+  for (int i = 0; i < kKnown + kNoisy; ++i) {
+    random.fill(noise, cv::RNG::NORMAL, 0.0, 2.0);
+    cv::add(image_, noise, frame.image, cv::noArray(), CV_8U);
+    frame.number = static_cast<std::uint64_t>(i);
+    frame.capture_time = vision::CaptureTime(std::chrono::milliseconds(20 * i));
+    pipeline.process(frame, 0.0, report);
+    if (i < kKnown) continue;
+    for (const tracker::RobotReport& robot : report.robots) {
+      if (!robot.aligned) continue;
+      const fusion::PlanarPose& pose = robot.pose_world_robot;
+      robots[robot.id].seen.emplace_back(pose.x_m, pose.y_m, pose.heading_rad);
+      robots[robot.id].variance += robot.covariance.diagonal();
+    }
+  }
+  int steadily_aligned = 0;
+  for (const auto& [id, poses] : robots) {
+    const auto count = static_cast<double>(poses.seen.size());
+    if (count < 0.9 * kNoisy) continue;
+    ++steadily_aligned;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero(), scatter = mean;
+    for (const Eigen::Vector3d& pose : poses.seen) mean += pose / count;
+    for (const Eigen::Vector3d& pose : poses.seen) scatter += (pose - mean).cwiseAbs2() / count;
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_LT(scatter[axis], poses.variance[axis] / count) << "robot " << id << ", axis " << axis;
+  }
+  EXPECT_GE(steadily_aligned, 4);
 }
 
 }  // namespace
