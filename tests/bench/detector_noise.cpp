@@ -87,7 +87,7 @@ Eigen::Vector3d error_of(const tracker::RobotReport& robot, const vision::RobotT
 void add_robot(const tracker::RobotReport& robot, const vision::RobotTruth& truth,
                CountNoise& noise) {
   const Eigen::Vector3d error = error_of(robot, truth);
-  ++noise.found;
+  ++noise.aligned;
   noise.pixels += robot.pixels[0];
   noise.x_m2 += error.x() * error.x();
   noise.y_m2 += error.y() * error.y();
@@ -105,7 +105,7 @@ void add_published(const tracker::RobotReport& robot, const vision::RobotTruth& 
 }
 
 void finish(CountNoise& noise) {
-  const double count = noise.found;
+  const double count = noise.aligned;
   noise.pixels /= count;
   noise.x_m2 /= count;
   noise.y_m2 /= count;
@@ -140,6 +140,8 @@ CountNoise study_one(const vision::Scene& scene, double expected_pixels, int fra
       ++noise.robots;
       const auto* robot = nearest(reports[0], truth, kMatchRadii * radius_px);
       if (robot == nullptr) continue;
+      ++noise.found;
+      if (!robot->aligned) continue;
       add_robot(*robot, truth, noise);
       for (std::size_t law = 0; law < laws.size(); ++law) {
         const auto* same = nearest(reports[law], truth, kMatchRadii * radius_px);

@@ -31,6 +31,7 @@ struct CountNoise {
   double pixels_per_metre = 0.0;
   int robots = 0;        ///< shown
   int found = 0;         ///< reported within half a mark's radius of the truth
+  int aligned = 0;       ///< of the found ones; errors are of these, by all variances
   int false_robots = 0;  ///< reported elsewhere
   double pixels = 0.0;   ///< counted of the centre mark, mean
   double x_m2 = 0.0;     ///< mean squared error of each axis
