@@ -229,7 +229,7 @@ void run(const std::string& json_file, const std::string& picture_file) {
   const bench::ResidualPicture residual =
       bench::residual_picture(picture, camera.map(), camera.layout(), camera.look(picture).robots);
   print(rows, residual);
-  if (!picture_file.empty() && !cv::imwrite(picture_file, residual.bgr))
+  if (!picture_file.empty() && !residual.bgr.empty() && !cv::imwrite(picture_file, residual.bgr))
     throw std::runtime_error("cannot write " + picture_file);
   nlohmann::json list;
   for (const Row& row : rows) list.push_back(as_json(row));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 #include "tracker/alignment/disc_shares.h"
@@ -21,8 +22,15 @@ constexpr double kMargin = 1.15;      // of a robot's reach, to the edge of its 
 constexpr double kDiscMargin_px = 2;  // of the plate around a disc that the template is drawn on
 
 struct Sum {
+  double values = 0.0;
   double squares = 0.0;
   double count = 0.0;
+  void add(double value) {
+    values += value;
+    squares += value * value;
+    count += 1.0;
+  }
+  double mean() const { return count > 0.0 ? values / count : 0.0; }
   double rms() const { return count > 0.0 ? std::sqrt(squares / count) : 0.0; }
 };
 
@@ -30,8 +38,7 @@ struct Workshop {
   const tracker::PlaneGrid& grid;
   tracker::PoseAligner aligner;
   tracker::SensorModel sensor;
-  Sum left, marks;
-  double plate_level = 0.0;
+  Sum left, marks, plates;
 };
 
 // The robots as often as it takes to learn the camera; poses of the last time.
@@ -78,12 +85,13 @@ void draw_disc(const cv::Mat& bgr, double radius_m, const AlignedDisc& disc, Wor
       drawn.at<cv::Vec3b>(v, u)[c] = cv::saturate_cast<unsigned char>(model);
       residual.at<cv::Vec3b>(v, u)[c] =
           cv::saturate_cast<unsigned char>(128.0 + kResidualGain * left);
-      workshop.left.squares += left * left;
-      workshop.left.count += 1.0;
+      workshop.left.add(left);
     }
   }
-  workshop.marks.squares += disc.contrast.squaredNorm();
-  workshop.marks.count += 3.0;
+  for (int c = 0; c < 3; ++c) {
+    workshop.marks.add(disc.contrast[c]);
+    workshop.plates.add(disc.level[c]);
+  }
 }
 
 cv::Rect crop_of(const AlignedPose& pose, double reach_px, const cv::Size& size) {
@@ -102,48 +110,44 @@ cv::Mat enlarged(const cv::Mat& part) {
   return result;
 }
 
-}  // namespace
-
-ResidualPicture residual_picture(const cv::Mat& bgr, const calibration::PlaneMap& map,
-                                 const vision::MarkerLayout& layout,
-                                 std::span<const tracker::RobotReport> robots) {
-  const tracker::PlaneGrid grid(map, bgr.cols, bgr.rows);
-  Workshop workshop{grid, tracker::PoseAligner(layout, grid), {bgr.cols, bgr.rows}, {}, {}, 0.0};
-  const std::vector<AlignedPose> poses = align_all(bgr, robots, workshop);
-  const tracker::DiscTemplate& robot = workshop.aligner.robot();
-  cv::Mat drawn(bgr.size(), CV_8UC3, cv::Scalar::all(128));
-  cv::Mat residual = drawn.clone();
-  for (const AlignedPose& pose : poses) {
-    for (std::size_t d = 0; d < static_cast<std::size_t>(robot.disc_count); ++d) {
-      workshop.plate_level += pose.discs[d].level.mean();
-      draw_disc(bgr, robot.radius_m[d], pose.discs[d], workshop, drawn, residual);
-    }
-  }
-  std::vector<cv::Mat> columns;
-  for (const AlignedPose& pose : poses) {
-    const double reach_px =
-        kMargin * robot.reach_m / workshop.grid.metres_per_pixel(pose.centre_px);
-    const cv::Rect crop = crop_of(pose, reach_px, bgr.size());
-    cv::Mat column;
-    cv::vconcat(
-        std::vector<cv::Mat>{enlarged(bgr(crop)), enlarged(drawn(crop)), enlarged(residual(crop))},
-        column);
-    columns.push_back(column);
-  }
-  ResidualPicture result{.left_grey = workshop.left.rms(),
-                         .marks_grey = workshop.marks.rms(),
-                         .blur_px = workshop.sensor.blur_px()};
-  if (poses.empty()) return result;
-  const double discs = static_cast<double>(poses.size()) * robot.disc_count;
-  result.noise_grey = std::sqrt(workshop.sensor.noise().variance(workshop.plate_level / discs));
+// Columns of different heights next to each other.
+cv::Mat side_by_side(std::vector<cv::Mat> columns) {
   int height = 0;
   for (const cv::Mat& column : columns) height = std::max(height, column.rows);
   for (cv::Mat& column : columns) {
     cv::copyMakeBorder(column, column, 0, height - column.rows, 0, 0, cv::BORDER_CONSTANT,
                        cv::Scalar::all(255));
   }
-  cv::hconcat(columns, result.bgr);
+  cv::Mat result;
+  if (!columns.empty()) cv::hconcat(columns, result);
   return result;
+}
+
+}  // namespace
+
+ResidualPicture residual_picture(const cv::Mat& bgr, const calibration::PlaneMap& map,
+                                 const vision::MarkerLayout& layout,
+                                 std::span<const tracker::RobotReport> robots) {
+  const tracker::PlaneGrid grid(map, bgr.cols, bgr.rows);
+  Workshop workshop{grid, tracker::PoseAligner(layout, grid), {bgr.cols, bgr.rows}, {}, {}, {}};
+  const tracker::DiscTemplate& robot = workshop.aligner.robot();
+  cv::Mat drawn(bgr.size(), CV_8UC3, cv::Scalar::all(128));
+  cv::Mat residual = drawn.clone();
+  std::vector<cv::Mat> columns;
+  for (const AlignedPose& pose : align_all(bgr, robots, workshop)) {
+    for (std::size_t d = 0; d < static_cast<std::size_t>(robot.disc_count); ++d)
+      draw_disc(bgr, robot.radius_m[d], pose.discs[d], workshop, drawn, residual);
+    const double reach_px = kMargin * robot.reach_m / grid.metres_per_pixel(pose.centre_px);
+    const cv::Rect crop = crop_of(pose, reach_px, bgr.size());
+    cv::vconcat(
+        std::vector<cv::Mat>{enlarged(bgr(crop)), enlarged(drawn(crop)), enlarged(residual(crop))},
+        columns.emplace_back());
+  }
+  return {.bgr = side_by_side(std::move(columns)),
+          .left_grey = workshop.left.rms(),
+          .marks_grey = workshop.marks.rms(),
+          .blur_px = workshop.sensor.blur_px(),
+          .noise_grey = std::sqrt(workshop.sensor.noise().variance(workshop.plates.mean()))};
 }
 
 }  // namespace nadir::bench
