@@ -6,8 +6,8 @@
 namespace nadir::tracker {
 namespace {
 
-constexpr double kFirstDeviation = 0.1;     // of a coefficient: light may change by so much
-constexpr double kMostSlope_per_px = 4e-3;  // more is a shadow's edge
+constexpr double kFirstDeviation = 0.1;   // of a coefficient: light may change by so much
+constexpr double kMostSlopePerPx = 4e-3;  // more is a shadow's edge
 constexpr int kSolveEvery = 64;
 constexpr double kMemory = 0.999;  // per slope: lamps are switched on and off
 
@@ -32,7 +32,7 @@ Eigen::Vector2d LightShape::slope_per_px(const vision::PixelPoint& pixel) const 
 
 void LightShape::learn(const vision::PixelPoint& pixel, const Eigen::Vector2d& slope_per_px,
                        double variance_per_px2) {
-  if (!(slope_per_px.norm() < kMostSlope_per_px)) return;
+  if (!(slope_per_px.norm() < kMostSlopePerPx)) return;
   const Basis b = basis(pixel);
   const double floor = 1.0 / (kFirstDeviation * kFirstDeviation);
   information_ *= kMemory;

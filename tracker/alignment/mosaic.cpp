@@ -31,7 +31,8 @@ Details details_of(const cv::Mat& bgr) {
           for (int c = 0; c < 3; ++c) {
             const int around =
                 value(u - 1, v, c) + value(u + 1, v, c) + value(u, v - 1, c) + value(u, v + 1, c);
-            sums[static_cast<std::size_t>(c)][static_cast<std::size_t>(2 * (v & 1) + (u & 1))] +=
+            const int phase = 2 * (v & 1) + (u & 1);
+            sums[static_cast<std::size_t>(c)][static_cast<std::size_t>(phase)] +=
                 std::min(kLargest, std::abs(4 * value(u, v, c) - around));
           }
         }
