@@ -15,7 +15,8 @@ TagPattern tag_pattern(int family, int id) {
   pattern.cells = codes->total_width;
   pattern.square_cells = codes->width_at_border;
   const auto paint = [&pattern](int column, int row) {
-    pattern.white[static_cast<std::size_t>(row * pattern.cells + column)] = 1;
+    const int cell = row * pattern.cells + column;
+    pattern.white[static_cast<std::size_t>(cell)] = 1;
   };
   // A ring of white cells just outside of the square or, where the square is white on black, just
   // inside of it. What is neither ring nor code is black.
