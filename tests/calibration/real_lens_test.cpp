@@ -14,7 +14,9 @@ class RealLens : public testing::Test {
  protected:
   void SetUp() override {
     const auto file = std::filesystem::path(NADIR_REAL_DIR) / "cpm_lab/points.csv";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "SKIPPED: no real recording at " << file;
+    if (!std::filesystem::exists(file))
+      GTEST_SKIP() << "SKIPPED, LOUDLY: no points of a real lens at " << file
+                   << "; its error is NOT checked";
     points_ = load_field_points(file);
   }
 

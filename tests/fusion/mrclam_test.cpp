@@ -18,8 +18,8 @@ class RealMotion : public testing::TestWithParam<int> {
  protected:
   void SetUp() override {
     if (!has_mrclam()) {
-      GTEST_SKIP() << "no recordings of real robots in " << mrclam_folder()
-                   << ": errors on real motion are not tested";
+      GTEST_SKIP() << "SKIPPED, LOUDLY: no recordings of real robots in " << mrclam_folder()
+                   << "; errors on real motion are NOT checked";
     }
   }
 

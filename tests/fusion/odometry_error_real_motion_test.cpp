@@ -58,7 +58,9 @@ Errors play(const MrclamFeed& feed) {
 }
 
 void expect_good(double delay_s, double drop_s, double largest_rms_m) {
-  if (!has_mrclam()) GTEST_SKIP() << "no recordings in " << mrclam_folder();
+  if (!has_mrclam())
+    GTEST_SKIP() << "SKIPPED, LOUDLY: no recordings of real robots in " << mrclam_folder()
+                 << "; learnt errors of odometry on real motion are NOT checked";
   for (const int robot : {1, 2}) {
     MrclamProtocol protocol;
     protocol.delay_s = delay_s;

@@ -10,7 +10,9 @@ namespace {
 class RealMapping : public testing::TestWithParam<int> {
  protected:
   void SetUp() override {
-    if (!has_mrclam()) GTEST_SKIP() << "no recordings in " << mrclam_folder();
+    if (!has_mrclam())
+      GTEST_SKIP() << "SKIPPED, LOUDLY: no recordings of real robots in " << mrclam_folder()
+                   << "; mapping of real landmarks is NOT checked";
   }
   /// Largest landmark RMSE after rigid alignment.
   static double goal_m() { return GetParam() == 1 ? 0.12 : 0.20; }
