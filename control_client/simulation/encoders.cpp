@@ -23,7 +23,7 @@ double Encoders::slipping(double speed_mps, double acceleration_mps2, int wheel,
   slip_s = parameters_.slip_mean_s + keep * (slip_s - parameters_.slip_mean_s) +
            std::sqrt(1.0 - keep * keep) * parameters_.slip_deviation_s * slip_stream_.normal();
   return speed_mps * (1.0 + scale_error_(wheel)) + slip_s * acceleration_mps2 +
-         parameters_.white_mps * std::sqrt(parameters_.tick_s / dt_s) * slip_stream_.normal();
+         parameters_.white_mps * std::sqrt(parameters_.tick_s / dt_s) * white_stream_.normal();
 }
 
 WheelVector Encoders::measured_rim_speeds_mps(const WheelVector& true_rim_speeds_mps, double dt_s) {

@@ -22,6 +22,9 @@ enum class EncoderKind {
 ///             lam = lam_mean + ph (lam - lam_mean) + sqrt(1 - ph^2) lam_deviation N(0, 1),
 ///             ph = exp(-Ti / slip_memory)
 ///     white:  measured = v + matched_mps N(0, 1) sqrt(tick / Ti)
+///
+/// The white noise of both kinds has a stream of its own. The stream of the slip draws eps and the
+/// first lam of each wheel in turn, then lam of each wheel in each interval.
 struct EncoderParameters {
   EncoderKind kind = EncoderKind::kSlip;
   double scale_deviation = 0.01;

@@ -147,6 +147,23 @@ TEST(Encoders, SlipGrowsWithAcceleration) {
   EXPECT_NEAR(std::sqrt(squares / kRuns - mean * mean), 0.02, 4.0 * 0.02 / std::sqrt(2.0 * kRuns));
 }
 
+// Switching the slip on leaves the white noise as it was.
+TEST(Encoders, WhiteNoiseIsTheSameWithAndWithoutSlip) {
+  EncoderParameters white;
+  white.kind = EncoderKind::kWhite;
+  EncoderParameters slipping;
+  slipping.kind = EncoderKind::kSlip;
+  slipping.white_mps = white.matched_mps;
+  Encoders of_white(white, 3, 2000);
+  Encoders of_slipping(slipping, 3, 2000);
+  // At rest there is nothing to scale and no acceleration to slip under.
+  const WheelVector rest = WheelVector::Zero(3);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(of_white.measured_rim_speeds_mps(rest, 0.005),
+              of_slipping.measured_rim_speeds_mps(rest, 0.005));
+  }
+}
+
 TEST(VisionFeed, VariancesAreThePapers) {
   EXPECT_EQ(pose_variances(7.0, 45.0), Eigen::Vector3d(1.5e-5, 1.9e-5, 6.2e-3));
   EXPECT_EQ(pose_variances(20.0, 29.9), Eigen::Vector3d(4.84e-6, 4.86e-6, 7.2e-3));
