@@ -20,10 +20,9 @@ Eigen::Vector3d OuterLoop::body_rate_command(const NominalMotion& nominal,
                                              bool integrate) {
   const Eigen::Vector3d error = {pose.x_m - nominal.pose.x(), pose.y_m - nominal.pose.y(),
                                  fusion::wrap_angle(pose.heading_rad - nominal.pose.z())};
-  Eigen::Vector3d rates = nominal.body_rates() - proportional_gain(nominal) * error -
-                          integral_gain(nominal) * error_integral_;
   if (integrate) error_integral_ += dt_s * error;
-  return rates;
+  return nominal.body_rates() - proportional_gain(nominal) * error -
+         integral_gain(nominal) * error_integral_;
 }
 
 }  // namespace nadir::control_client

@@ -19,7 +19,8 @@ class OuterLoop {
  public:
   explicit OuterLoop(const LoopParameters& parameters) : parameters_(parameters) {}
 
-  /// One tick of dt_s. With `integrate` false the integral keeps its value (saturated motors).
+  /// dt_s after the tick before. The error counts for that time in the integral, which the rates
+  /// then use; with `integrate` false the integral keeps its value (saturated motors).
   Eigen::Vector3d body_rate_command(const NominalMotion& nominal, const fusion::PlanarPose& pose,
                                     double dt_s, bool integrate = true);
   void restart() { error_integral_.setZero(); }

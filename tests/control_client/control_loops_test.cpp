@@ -67,7 +67,7 @@ TEST(OuterLoop, TurnsTheShortWayAcrossPi) {
   NominalMotion nominal;
   nominal.pose.z() = 7.0 * std::numbers::pi + 0.05;  // unwrapped, a little beyond pi
   const fusion::PlanarPose pose{0.0, 0.0, std::numbers::pi - 0.05};
-  const double turn_radps = loop.body_rate_command(nominal, pose, 0.02).z();
+  const double turn_radps = loop.body_rate_command(nominal, pose, 0.02, false).z();
   EXPECT_NEAR(turn_radps, kControl.outer.proportional_gain_per_s() * 0.1, 1e-9);
 }
 
@@ -76,8 +76,11 @@ TEST(OuterLoop, KeepsItsIntegralWhenToldSo) {
   const NominalMotion nominal;
   const fusion::PlanarPose off{0.1, 0.0, 0.0};
   const Eigen::Vector3d first = loop.body_rate_command(nominal, off, 0.02, false);
-  EXPECT_EQ(loop.body_rate_command(nominal, off, 0.02, true), first);
-  EXPECT_LT(loop.body_rate_command(nominal, off, 0.02, true).x(), first.x());
+  EXPECT_EQ(loop.body_rate_command(nominal, off, 0.02, false), first);
+  // The error of this tick counts for the time since the tick before, in this tick's rates.
+  const Eigen::Vector3d second = loop.body_rate_command(nominal, off, 0.02, true);
+  EXPECT_NEAR(first.x() - second.x(), kControl.outer.integral_gain_per_s2() * 0.02 * 0.1, 1e-12);
+  EXPECT_EQ(loop.body_rate_command(nominal, off, 0.02, false), second);
 }
 
 TEST(InnerLoop, HasTheAssignedPolesAtAnyBodyRates) {
