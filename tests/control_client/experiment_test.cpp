@@ -131,7 +131,7 @@ TEST(CramerRaoBound, MoreKnowledgeIsBetterAndTheSteadyStateIsTheClosedForm) {
   EXPECT_NEAR(delayed(2, 2) / (steady + 4.0 * step), 1.0, 0.01);
 }
 
-// Theory 13.4, four runs a trajectory instead of 40; the mean of 40 is 2.2 to 2.5 mm.
+// Theory 13.4, four runs a trajectory instead of 40; the mean of 40 is 2.4 to 2.7 mm.
 TEST(SlippingWheels, TheFilterStaysWithinMillimetres) {
   for (const char* name : {"square-turning", "square", "circle", "rose3", "rose4"}) {
     SCOPED_TRACE(name);
