@@ -165,9 +165,8 @@ TEST(ColouredSlip, AccelerationNoiseIsIdentifiedFromARecordedRun) {
   const auto found = fusion::identify_acceleration_noise(samples);
   ASSERT_TRUE(found.has_value());
   const EncoderParameters slip;
-  const double expected =
-      slip.tick_s * (slip.slip_mean_s * slip.slip_mean_s / 2.0 +
-                     slip.slip_deviation_s * slip.slip_deviation_s / 3.0);
+  const double expected = slip.tick_s * (slip.slip_mean_s * slip.slip_mean_s / 2.0 +
+                                         slip.slip_deviation_s * slip.slip_deviation_s / 3.0);
   EXPECT_NEAR(expected, 3.67e-6, 0.01e-6);
   EXPECT_NEAR(found->noise.k2_m2ps / expected, 1.0, 0.5);
   EXPECT_GT(found->noise.k2_m2ps, 5.0 * found->sigma_k2_m2ps);
