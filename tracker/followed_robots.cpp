@@ -5,8 +5,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "vision/prefetch.h"
-
 namespace nadir::tracker {
 namespace {
 
@@ -85,8 +83,10 @@ void FollowedRobots::follow(const vision::Frame& frame) {
   }
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     FollowedRobot& robot = robots_[i];
-    if (i + 1 < robots_.size()) fetch(frame.image, robots_[i + 1]);
     if (robot.sightings < kSightingsToFollow) continue;
+    if (i + 1 < robots_.size()) {
+      aligners_[robot.layout].fetch_meanwhile(pixels_of(frame.image, robots_[i + 1]));
+    }
     align(frame, robot);
     if (!robot.found) robot.sightings = 0;
   }
@@ -131,12 +131,12 @@ bool FollowedRobots::misses_someone(std::size_t layout,
   return true;
 }
 
-// Asks memory for the pixels of the robot that is next.
-void FollowedRobots::fetch(const cv::Mat& image, const FollowedRobot& robot) const {
+// Those that show a robot, if it has not moved.
+vision::SquareFetch FollowedRobots::pixels_of(const cv::Mat& image,
+                                              const FollowedRobot& robot) const {
   const vision::PixelPoint& at = robot.aligned.centre_px;
-  vision::fetch_square(
-      image, at,
-      aligners_[robot.layout].robot().reach_m / grids_[robot.layout]->metres_per_pixel(at));
+  return {image, at,
+          aligners_[robot.layout].robot().reach_m / grids_[robot.layout]->metres_per_pixel(at)};
 }
 
 // Plates of the other robots of a layout, where they are by now or are expected.

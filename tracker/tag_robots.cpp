@@ -9,7 +9,6 @@
 
 #include "tracker/pixel_near.h"
 #include "vision/input/input_error.h"
-#include "vision/prefetch.h"
 
 namespace nadir::tracker {
 namespace {
@@ -94,22 +93,22 @@ void TagRobots::detect(const vision::Frame& frame) {
   found_.clear();
   misshapen_.clear();
   for (std::size_t i = 0; i < memories_.size(); ++i) {
-    if (i + 1 < memories_.size()) fetch(frame.image, memories_[i + 1]);
-    expect(frame, memories_[i]);
+    expect(frame, memories_[i], i + 1 < memories_.size() ? &memories_[i + 1] : nullptr);
   }
   search_.search(frame.image, expected_, found_, false, seen_);
   for (const vision::TagSighting& seen : seen_.tags) take(frame.image, seen);
 }
 
-// Asks memory for the pixels of the robot that is next.
-void TagRobots::fetch(const cv::Mat& image, const Memory& robot) const {
+// Those that show a robot, if it has not moved.
+vision::SquareFetch TagRobots::pixels_of(const cv::Mat& image, const Memory& robot) const {
   const double side_px =
       kinds_[robot.kind].layout.size_m / grids_[robot.kind]->metres_per_pixel(robot.centre_px);
-  vision::fetch_square(image, robot.centre_px, kFetched_sides * side_px);
+  return {image, robot.centre_px, kFetched_sides * side_px};
 }
 
-// Where the robot's tags should be now: aligned there, or a place to search.
-void TagRobots::expect(const vision::Frame& frame, const Memory& robot) {
+// Where the robot's tags should be now: aligned there, or a place to search. `next`: the robot that
+// comes after it, or null.
+void TagRobots::expect(const vision::Frame& frame, const Memory& robot, const Memory* next) {
   const TagRobotKind& kind = kinds_[robot.kind];
   const double ahead_s = seconds(time_ - robot.time);
   const Eigen::Vector3d move = robot.velocity * ahead_s;
@@ -127,6 +126,9 @@ void TagRobots::expect(const vision::Frame& frame, const Memory& robot) {
     sighting.pose.centre_px =
         pixel_near(kind.map, sighting.pose.pose_world_tag.position_m(), robot.centre_px);
     const bool may_align = settings_.aligned && robot.has_velocity && robot.missed == 0;
+    if (may_align && next != nullptr) {
+      aligners_[robot.kind].fetch_meanwhile(pixels_of(frame.image, *next));
+    }
     // One tag a frame tells of noise and blur.
     const bool teach = sightings_.size() == frames_ % std::max<std::size_t>(memories_.size(), 1);
     if (may_align && align(frame.image, sighting, teach)) {

@@ -15,6 +15,7 @@
 #include "tracker/pose_report.h"
 #include "tracker/tag_pose.h"
 #include "vision/frame.h"
+#include "vision/prefetch.h"
 #include "vision/tag_search.h"
 
 namespace nadir::tracker {
@@ -92,8 +93,8 @@ class TagRobots {
   };
 
   void look_for_mosaic(const cv::Mat& image);
-  void fetch(const cv::Mat& image, const Memory& robot) const;
-  void expect(const vision::Frame& frame, const Memory& robot);
+  vision::SquareFetch pixels_of(const cv::Mat& image, const Memory& robot) const;
+  void expect(const vision::Frame& frame, const Memory& robot, const Memory* next);
   bool align(const cv::Mat& image, Sighting& sighting, bool teach);
   void take(const cv::Mat& image, const vision::TagSighting& seen);
   TagRobot robot_of(std::size_t first);

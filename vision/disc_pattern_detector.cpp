@@ -96,7 +96,7 @@ void DiscPatternDetector::State::reject(DetectionResult& result, const PixelPoin
 
 // Asks memory for the pixels that a robot at this place would cover, before they are needed.
 void DiscPatternDetector::State::fetch_robot(const cv::Mat& bgr, const PixelPoint& place) const {
-  fetch_square(bgr, place, reach_m * scale.largest_pixels_per_metre());
+  SquareFetch(bgr, place, reach_m * scale.largest_pixels_per_metre()).all_rows();
 }
 
 void DiscPatternDetector::State::mark_robot(const PixelPoint& place) {

@@ -9,23 +9,47 @@
 
 namespace nadir::vision {
 
-/// Asks memory for the pixels of a square about a place, 2 `reach_px` wide, before they are needed:
-/// the processor does not foresee which rows are to come.
-inline void fetch_square(const cv::Mat& image, const PixelPoint& centre_px, double reach_px) {
-  constexpr std::ptrdiff_t kCacheLineBytes = 64;
-  const auto pixel_bytes = static_cast<std::ptrdiff_t>(image.elemSize());
-  const std::ptrdiff_t begin = pixel_bytes *
-                               std::max(0, static_cast<int>(centre_px.x() - reach_px)) /
-                               kCacheLineBytes * kCacheLineBytes;
-  const std::ptrdiff_t end =
-      pixel_bytes * std::min(image.cols, static_cast<int>(centre_px.x() + reach_px));
-  const int row_end = std::min(image.rows, static_cast<int>(centre_px.y() + reach_px));
-  for (int row = std::max(0, static_cast<int>(centre_px.y() - reach_px)); row < row_end; ++row) {
-    const std::uint8_t* const line = image.ptr<std::uint8_t>(row);
-    for (std::ptrdiff_t byte = begin; byte < end; byte += kCacheLineBytes) {
-      __builtin_prefetch(line + byte);
-    }
+/// The pixels of a square of an image that memory is asked for before they are needed, row by row:
+/// the processor does not foresee which rows are to come, and stands still when it is asked for
+/// more than it can wait for at once. Between other work a row costs almost nothing. The image must
+/// outlive it.
+class SquareFetch {
+ public:
+  SquareFetch() = default;  ///< nothing to fetch
+  /// The square about `centre_px`, 2 `reach_px` wide, as far as it lies in the image.
+  SquareFetch(const cv::Mat& image, const PixelPoint& centre_px, double reach_px) {
+    const auto pixel_bytes = static_cast<std::ptrdiff_t>(image.elemSize());
+    const auto left = std::max(0, static_cast<int>(centre_px.x() - reach_px));
+    const auto right = std::min(image.cols, static_cast<int>(centre_px.x() + reach_px));
+    const auto top = std::max(0, static_cast<int>(centre_px.y() - reach_px));
+    const auto bottom = std::min(image.rows, static_cast<int>(centre_px.y() + reach_px));
+    if (right <= left || bottom <= top) return;
+    const std::ptrdiff_t begin = pixel_bytes * left / kCacheLineBytes * kCacheLineBytes;
+    row_ = image.ptr<std::uint8_t>(top) + begin;
+    row_bytes_ = pixel_bytes * right - begin;
+    step_bytes_ = static_cast<std::ptrdiff_t>(image.step[0]);
+    rows_left_ = bottom - top;
   }
-}
+
+  void next_row() {
+    if (rows_left_ <= 0) return;
+    for (std::ptrdiff_t byte = 0; byte < row_bytes_; byte += kCacheLineBytes) {
+      __builtin_prefetch(row_ + byte);
+    }
+    --rows_left_;
+    if (rows_left_ > 0) row_ += step_bytes_;
+  }
+  void all_rows() {
+    while (rows_left_ > 0) next_row();
+  }
+
+ private:
+  static constexpr std::ptrdiff_t kCacheLineBytes = 64;
+
+  const std::uint8_t* row_ = nullptr;
+  std::ptrdiff_t row_bytes_ = 0;
+  std::ptrdiff_t step_bytes_ = 0;
+  int rows_left_ = 0;
+};
 
 }  // namespace nadir::vision

@@ -76,6 +76,7 @@ struct Rows {
   int begin, end, step;
   int u0, v0;               // from where pixels count
   float level, by_u, by_v;  // light there over that of the disc's middle, and its change
+  vision::SquareFetch* meanwhile;
 };
 
 Rows rows_of(const Ring& ring, const PatchWindow& window, const cv::Mat& image, bool mosaic) {
@@ -94,6 +95,7 @@ Rows rows_of(const Ring& ring, const PatchWindow& window, const cv::Mat& image, 
   rows.level = static_cast<float>(1.0 - slope.dot(window.centre_px - from));
   rows.by_u = static_cast<float>(slope.x());
   rows.by_v = static_cast<float>(slope.y());
+  rows.meanwhile = window.meanwhile;
   return rows;
 }
 
@@ -142,6 +144,7 @@ NADIR_VECTOR_CLONES
 void gather_all(const cv::Mat& image, const Ring& ring, const Rows& rows, DiscPatch& patch) {
   std::array<Chord, 2> chords;
   for (int v = rows.begin; v < rows.end; v += rows.step) {
+    if (rows.meanwhile != nullptr) rows.meanwhile->next_row();
     const int chord_count = ring.chords(v, image.cols, chords);
     for (int k = 0; k < chord_count; ++k) {
       if (patch.count + chords[k].end - chords[k].begin > kPatchCapacity - 2 * kRun) break;
@@ -164,6 +167,7 @@ void gather_native(const cv::Mat& image, Mosaic mosaic, const Ring& ring, const 
     const auto channel = static_cast<std::size_t>(c);
     patch.begin[channel] = patch.count;
     for (int v = rows.begin; v < rows.end; v += rows.step) {
+      if (rows.meanwhile != nullptr) rows.meanwhile->next_row();
       const int chord_count = ring.chords(v, image.cols, chords);
       const std::uint8_t* row = image.ptr<std::uint8_t>(v) + (channels == 3 ? c : 0);
       const std::size_t first = (v & 1) != 0 ? 2 : 0;

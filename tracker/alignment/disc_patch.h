@@ -6,6 +6,7 @@
 
 #include "tracker/alignment/mosaic.h"
 #include "tracker/alignment/plane_grid.h"
+#include "vision/prefetch.h"
 
 namespace nadir::tracker {
 
@@ -37,6 +38,8 @@ struct PatchWindow {
   bool whole = false;      ///< all of the disc, not only what is near its edge
   /// Relative change of the light per pixel, to be taken out of the values.
   Eigen::Vector2d light_slope_per_px = Eigen::Vector2d::Zero();
+  /// Of another place, fetched meanwhile; or null.
+  vision::SquareFetch* meanwhile = nullptr;
 };
 
 /// Fills the patch with pixels of `image` (CV_8UC3, or with a mosaic CV_8UC1 too) whose middle lies

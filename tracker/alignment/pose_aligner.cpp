@@ -25,17 +25,21 @@ PoseAligner& PoseAligner::operator=(PoseAligner&&) noexcept = default;
 
 const DiscTemplate& PoseAligner::robot() const { return fit_->robot(); }
 
+void PoseAligner::fetch_meanwhile(const vision::SquareFetch& next) { meanwhile_ = next; }
+
 bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& sensor,
                         const PoseGuess& guess, const ExpectedLook* look,
                         std::span<const Obstacle> obstacles, AlignedPose& result) {
-  const FramePixels frame{image, mosaic, sensor.light};
+  const FramePixels frame{image, mosaic, sensor.light, &meanwhile_};
   const double farthest_m = kFarthest_radii * fit_->robot().radius_m[0];
   // Of a robot that is followed the first step is mostly the last but one.
   fit_->begin(guess.pose_world_robot, look != nullptr);
   int covered = 0;
   for (result.iterations = 1; result.iterations <= kMostIterations; ++result.iterations) {
     if (result.iterations == 1 || fit_->must_gather()) {
-      if (!fit_->gather(frame, guess.centre_px, sensor.blur_px(), obstacles)) return false;
+      const bool seen = fit_->gather(frame, guess.centre_px, sensor.blur_px(), obstacles);
+      meanwhile_.all_rows();
+      if (!seen) return false;
       covered = 0;
     }
     fit_->evaluate(sensor.noise());

@@ -9,6 +9,7 @@
 #include "tracker/alignment/mosaic.h"
 #include "tracker/alignment/plane_grid.h"
 #include "tracker/alignment/sensor_model.h"
+#include "vision/prefetch.h"
 
 namespace nadir::tracker {
 
@@ -37,6 +38,10 @@ class PoseAligner {
   PoseAligner(PoseAligner&&) noexcept;
   PoseAligner& operator=(PoseAligner&&) noexcept;
 
+  /// Pixels that the next call of `align` asks memory for, between those that it gathers: the robot
+  /// that is next.
+  void fetch_meanwhile(const vision::SquareFetch& next);
+
   /// False, and nothing of use in `result`, where no pose can be had: outside of the image, fewer
   /// than two discs that look as expected, or no convergence. `look` null: nothing is known of the
   /// colours. `obstacles`: other robots (their plates), in the same plane.
@@ -52,6 +57,7 @@ class PoseAligner {
  private:
   AlignmentSettings settings_;
   std::unique_ptr<RobotFit> fit_;
+  vision::SquareFetch meanwhile_;
   std::size_t taught_disc_ = 0;
 };
 

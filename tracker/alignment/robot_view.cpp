@@ -61,6 +61,7 @@ bool RobotView::gather(const FramePixels& frame, const RobotPlace& place, std::s
   window.margin_px = (whole ? kWholeMargin_sigmas : settings_.margin_sigmas) * blur_px_;
   window.whole = whole;
   window.light_slope_per_px = frame.light.slope_per_px(window.centre_px);
+  window.meanwhile = frame.meanwhile;
   const auto far = [&](double at, int size) { return !(at > -size && at < 2.0 * size); };
   if (far(window.centre_px.x(), frame.image.cols) || far(window.centre_px.y(), frame.image.rows) ||
       !tracker::gather(frame.image, frame.mosaic, *grid_, window, state.patch)) {

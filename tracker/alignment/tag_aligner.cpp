@@ -17,9 +17,12 @@ constexpr double kSettled_px = 0.03;  // the step after this one would be smalle
 constexpr double kFarthest_cells = 1.2;  // from the guess
 constexpr double kFarthest_rad = 0.2;
 constexpr double kLeastPixels = 60.0;
-// Noise is each pixel's own; what else disturbs them (motion, a wrong gamma) is shared by
-// neighbours: so many err together.
-constexpr double kErrTogether = 3.0;
+// Noise is each pixel's own; what else disturbs them (motion, a wrong gamma) depends on how far an
+// edge runs from a pixel's middle. Along an edge that changes by the edge's slope from one pixel to
+// the next: so many err together, the most where the print lies along the rows.
+constexpr double kFewestErrTogether = 3.0;
+constexpr double kMostErrTogether = 10.0;
+constexpr double kAlike_px = 0.5;  // change of that distance between two that err together
 constexpr double kMostBlurInformation = 5e4;  // of one tag, 1 / px^2
 
 using Step = Eigen::Matrix<double, kTagSteps, 1>;
@@ -71,12 +74,14 @@ struct TagAligner::State {
   bool step();
   void move(const Step& change);
   bool finish(AlignedTag& result);
+  double pixels_that_err_together(const LocalPlane& plane) const;
   TagPlace place() const;
 
   vision::TagLayout layout;
   const PlaneGrid* grid;
   TagAlignmentSettings settings;
   std::map<int, TagTemplate> prints;
+  vision::SquareFetch meanwhile;
   TagPatch patch;
   const TagTemplate* print = nullptr;
   TagWeights weights;
@@ -86,6 +91,7 @@ struct TagAligner::State {
   double left = 1.0;
   double cell_px = 0.0;
   double cell_m = 0.0;
+  double err_together = kFewestErrTogether;
   double last_step_px = 0.0;
   Eigen::Matrix3d covariance;  // of the pose's part of a step
   double edges = 0.0;          // information of both shifts
@@ -101,6 +107,13 @@ const TagTemplate& TagAligner::State::print_of(int tag_id) {
   if (known != prints.end()) return known->second;
   return prints.emplace(tag_id, TagTemplate(vision::tag_pattern(layout.family, tag_id)))
       .first->second;
+}
+
+double TagAligner::State::pixels_that_err_together(const LocalPlane& plane) const {
+  const Eigen::Vector2d axis(std::cos(pose.heading_rad), std::sin(pose.heading_rad));
+  const Eigen::Vector2d edge_px = (plane.slope.inverse() * axis).cwiseAbs();
+  const double slope = edge_px.minCoeff() / edge_px.maxCoeff();
+  return std::clamp(kAlike_px / std::max(slope, 1e-6), kFewestErrTogether, kMostErrTogether);
 }
 
 TagPlace TagAligner::State::place() const {
@@ -124,13 +137,16 @@ bool TagAligner::State::prepare(const cv::Mat& image, Mosaic mosaic, const Senso
   // v runs down: a plane whose axes turn left seen from above is mirrored against the image.
   left = determinant < 0.0 ? 1.0 : -1.0;
   cell_px = cell_m / std::sqrt(std::abs(determinant));
+  err_together = pixels_that_err_together(plane);
   weights.blur_cells = static_cast<float>(sensor.blur_px() / cell_px);
   weights.margin_cells = static_cast<float>(settings.margin_sigmas) * weights.blur_cells;
   weights.noise = sensor.noise();
   weights.huber_sigmas = static_cast<float>(settings.huber_sigmas);
   weights.stride = kFirstStride;
   const double reach_m = 0.5 * cell_m * layout.facts().cells;
-  if (!gather_tag(image, mosaic, *grid, first, middle_px, reach_m, patch)) return false;
+  const bool seen = gather_tag(image, mosaic, *grid, first, middle_px, reach_m, meanwhile, patch);
+  meanwhile.all_rows();
+  if (!seen) return false;
   for (int segment = 0; segment < patch.segments; ++segment) {
     TagLevels& level = levels[static_cast<std::size_t>(segment)];
     level = fit_tag_levels(patch, segment, *print, place(), weights);
@@ -205,7 +221,7 @@ bool TagAligner::State::finish(AlignedTag& result) {
   const double chance = 2.0 * std::sqrt(6.0 / pixels);
   const double excess =
       std::max({0.0, by_edges - 1.0 - chance, result.chi_square_per_dof - 1.0 - chance});
-  const double inflation = 1.0 + kErrTogether * excess;
+  const double inflation = 1.0 + err_together * excess;
   const double cosine = std::cos(pose.heading_rad);
   const double sine = std::sin(pose.heading_rad);
   Eigen::Matrix3d world_from_step = Eigen::Matrix3d::Identity();
@@ -228,6 +244,8 @@ TagAligner::TagAligner(const vision::TagLayout& layout, const PlaneGrid& grid,
 TagAligner::~TagAligner() = default;
 TagAligner::TagAligner(TagAligner&&) noexcept = default;
 TagAligner& TagAligner::operator=(TagAligner&&) noexcept = default;
+
+void TagAligner::fetch_meanwhile(const vision::SquareFetch& next) { state_->meanwhile = next; }
 
 bool TagAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& sensor, int tag_id,
                        const fusion::PlanarPose& guess, const vision::PixelPoint& middle_px,

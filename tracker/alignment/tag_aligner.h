@@ -8,6 +8,7 @@
 #include "tracker/alignment/mosaic.h"
 #include "tracker/alignment/plane_grid.h"
 #include "tracker/alignment/sensor_model.h"
+#include "vision/prefetch.h"
 #include "vision/tag_layout.h"
 
 namespace nadir::tracker {
@@ -49,6 +50,10 @@ class TagAligner {
   ~TagAligner();
   TagAligner(TagAligner&&) noexcept;
   TagAligner& operator=(TagAligner&&) noexcept;
+
+  /// Pixels that the next call of `align` asks memory for, between those that it gathers: the tag
+  /// that is next.
+  void fetch_meanwhile(const vision::SquareFetch& next);
 
   /// `guess`: of the tag, good to half a cell and about 5 degrees; `middle_px`: where the image
   /// shows it, to a few pixels. False where no pose can be had: partly out of the image, no

@@ -78,9 +78,10 @@ int pad(int at, TagPatch& patch) {
   return at;
 }
 
-// Every `step`-th of the rows that the square touches.
+// Every `step`-th of the rows that the square touches, and what is fetched between them.
 struct RowRange {
   int begin, end, step;
+  vision::SquareFetch& meanwhile;
 };
 
 // Pixels of a row, the last not included; empty: end <= begin.
@@ -131,6 +132,7 @@ int gather_sums(const cv::Mat& image, const PlaneGrid& grid, const Eigen::Vector
                 const SquareRows& rows, const RowRange& range, TagPatch& patch) {
   int at = 0;
   for (int v = range.begin; v < range.end; v += range.step) {
+    range.meanwhile.next_row();
     const Chord chord = chord_of(rows, v, image.cols);
     if (chord.end <= chord.begin) continue;
     if (at + chord.end - chord.begin > kTagPatchCapacity - 2 * kRun) break;
@@ -159,6 +161,7 @@ int gather_channel(const cv::Mat& image, Mosaic mosaic, int channel, const Plane
   const std::ptrdiff_t channels = image.channels();
   const int step = channel < 0 ? 1 : 2;
   for (int v = range.begin; v < range.end; v += range.step) {
+    range.meanwhile.next_row();
     Chord chord = chord_of(rows, v, image.cols);
     if (channel >= 0) {
       const std::size_t first = (v & 1) == 0 ? 0 : 2;
@@ -182,7 +185,7 @@ int gather_channel(const cv::Mat& image, Mosaic mosaic, int channel, const Plane
 
 bool gather_tag(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid,
                 const fusion::PlanarPose& pose, const vision::PixelPoint& middle_px, double reach_m,
-                TagPatch& patch) {
+                vision::SquareFetch& meanwhile, TagPatch& patch) {
   const int middle_v = static_cast<int>(std::lround(middle_px.y()));
   const LocalPlane plane = grid.about(static_cast<int>(std::lround(middle_px.x())), middle_v);
   const SquareRows rows(plane, pose, middle_px, reach_m);
@@ -190,7 +193,7 @@ bool gather_tag(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid,
   const int half_height = rows.half_height_px();
   const RowRange range = {std::max(0, middle_v - half_height),
                           std::min(image.rows, middle_v + half_height + 1),
-                          1 + static_cast<int>(area_px / (0.95 * kTagPatchCapacity))};
+                          1 + static_cast<int>(area_px / (0.95 * kTagPatchCapacity)), meanwhile};
   const Eigen::Vector2d from_m = pose.position_m();
   const bool sums = mosaic == Mosaic::kNone && image.channels() == 3;
   patch.segments = mosaic == Mosaic::kNone ? 1 : 3;

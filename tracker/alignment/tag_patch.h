@@ -7,6 +7,7 @@
 #include "fusion/planar_pose.h"
 #include "tracker/alignment/mosaic.h"
 #include "tracker/alignment/plane_grid.h"
+#include "vision/prefetch.h"
 
 namespace nadir::tracker {
 
@@ -29,9 +30,10 @@ struct TagPatch {
 
 /// Gathers the pixels of `image` (CV_8UC3 or CV_8UC1) in a square about `pose` on the plane, whose
 /// half side is `reach_m`; every second or third row only, if they are too many. `middle_px` is
-/// where the image shows its middle, about. False if fewer than half of them are in the image.
+/// where the image shows its middle, about. `meanwhile`: of another place, fetched between the
+/// rows. False if fewer than half of the pixels are in the image.
 bool gather_tag(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid,
                 const fusion::PlanarPose& pose, const vision::PixelPoint& middle_px, double reach_m,
-                TagPatch& patch);
+                vision::SquareFetch& meanwhile, TagPatch& patch);
 
 }  // namespace nadir::tracker
