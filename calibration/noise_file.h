@@ -10,7 +10,7 @@ namespace nadir::calibration {
 /// Error of the centre of an aligned mark, px per axis, that neither the frame's noise nor its
 /// residuals tell of: what the pixel grid and the template's own rounding leave, measured with the
 /// synthetic camera.
-inline constexpr double kAlignmentFloor_px = 0.0015;
+inline constexpr double kAlignmentFloor_px = 0.001;
 
 /// What NOISE.yaml says of one camera.
 struct NoiseFile {

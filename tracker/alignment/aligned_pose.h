@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "calibration/noise_file.h"
 #include "fusion/planar_pose.h"
 #include "vision/marker_layout.h"
 #include "vision/pixel.h"
@@ -52,7 +53,7 @@ struct AlignmentSettings {
   double huber_sigmas = 2.5;
   double far_sigmas = 5.0;  ///< a pixel's pull fades beyond it, once the pose is nearly right
   /// Error of a disc's centre, per axis, that neither noise nor residuals tell of.
-  double floor_px = 0.0015;
+  double floor_px = calibration::kAlignmentFloor_px;
   double rim_sigmas = 2.0;  ///< pixels nearer to the plate's rim than this many blurs are masked
   /// Pixels further from a disc's edge than this many blurs say nothing of where it is.
   double margin_sigmas = 2.0;

@@ -10,7 +10,7 @@ namespace {
 constexpr double kSettled_px = 0.03;
 constexpr double kNear_px = 0.5;
 constexpr double kNoLimit = 1e9;
-constexpr double kSuspicious = 1.15;        // chi-square per degree of freedom
+constexpr double kSuspicious = 1.25;        // chi-square per degree of freedom
 constexpr double kSuspicious_sigmas = 3.0;  // beyond what chance makes of it
 constexpr double kPullShare = 0.4;          // of the pixels pull at the centre
 // A slope of the light of 1 per pixel shifts a disc by so many radii and blurs; a shadow's edge is
