@@ -32,6 +32,16 @@ fusion::PlanarPose robot_of(const TagPose& tag) {
   return {place_m.x(), place_m.y(), heading_rad};
 }
 
+// libapriltag's lines are off by up to an eighth of a pixel where an edge keeps its distance from
+// the pixels' middles all along: where it lies along rows or columns. All four edges share that.
+double lattice_deviation_px(const vision::TagObservation& tag, double side_px) {
+  constexpr double kAlong_px = 0.09;
+  const Eigen::Vector2d right_px =
+      (tag.corners_px[1] - tag.corners_px[0] + tag.corners_px[2] - tag.corners_px[3]).cwiseAbs();
+  const double slope = right_px.minCoeff() / std::max(right_px.maxCoeff(), 1e-9);
+  return kAlong_px / std::max(1.0, side_px * slope);
+}
+
 // Of the residuals (place, heading) of a tag, derivative -a by the robot's pose.
 struct Linear {
   Eigen::Vector3d residual;
@@ -52,14 +62,15 @@ Linear linear(const TagPose& tag, const fusion::PlanarPose& robot) {
 }  // namespace
 
 TagDeviation tag_deviation(double side_px, double contrast) {
-  constexpr double kFloor_px = 0.0205;
+  constexpr double kFloor_px = 0.011;
+  constexpr double kHeadingFloor_px = 0.0205;
   constexpr double kSmall_px3 = 12.5;
   constexpr double kNoise = 0.6;   // grey levels times pixels
   constexpr double kLever = 1.45;  // the heading's error times the side over the middle's error
   const double size = std::max(side_px, 10.0);
   const double noise_px = kNoise / std::max(contrast, 5.0);
-  const double centre_px = std::hypot(kFloor_px, kSmall_px3 / (size * size), noise_px);
-  return {centre_px, kLever * centre_px / size};
+  const double small_px = std::hypot(kSmall_px3 / (size * size), noise_px);
+  return {std::hypot(kFloor_px, small_px), kLever * std::hypot(kHeadingFloor_px, small_px) / size};
 }
 
 TagPose tag_pose(const vision::TagObservation& tag, double size_m, const vision::TagMount& mount,
@@ -88,11 +99,11 @@ TagPose tag_pose(const vision::TagObservation& tag, double size_m, const vision:
     const double off_m = (corners_m[i] - middle_m - square_m[i]).norm();
     pose.misshape = std::max(pose.misshape, off_m / size_m);
   }
-  const TagDeviation deviation =
-      tag_deviation(std::sqrt(vision::area_px2(tag)), 2.0 * tag.decision_margin);
+  const double side_px = std::sqrt(vision::area_px2(tag));
+  const TagDeviation deviation = tag_deviation(side_px, 2.0 * tag.decision_margin);
+  const double centre_px = std::hypot(deviation.centre_px, lattice_deviation_px(tag, side_px));
   const Eigen::Matrix2d jacobian = map.jacobian_m_per_px(pose.centre_px);
-  pose.covariance.topLeftCorner<2, 2>() =
-      deviation.centre_px * deviation.centre_px * jacobian * jacobian.transpose();
+  pose.covariance.topLeftCorner<2, 2>() = centre_px * centre_px * jacobian * jacobian.transpose();
   pose.covariance(2, 2) = deviation.heading_rad * deviation.heading_rad;
   return pose;
 }

@@ -151,12 +151,13 @@ nlohmann::json report_accuracy(const std::string& name, const Errors& aligned,
   fmt::print(
       "{:<6} {:>5}/{:<5} wrong {}  corners {:.4f} px {:.4f} deg NEES {:.2f}  aligned {:.5f} px "
       "{:.5f} deg  times better {:.1f} {:.1f}  over bound {:.2f} {:.2f}  NEES {:.2f}, beyond six "
-      "sigma {}\n",
+      "sigma {} (corners {})\n",
       name, aligned.found, aligned.shown, aligned.wrong + corners.wrong, corners.place_px(),
       corners.heading_deg(), corners.nees / static_cast<double>(corners.found), aligned.place_px(),
       aligned.heading_deg(), corners.place_px() / aligned.place_px(),
       corners.heading_deg() / aligned.heading_deg(), aligned.place_px() / bounds.place_px(),
-      aligned.heading_deg() / bounds.heading_deg(), aligned.nees / found, aligned.overconfident);
+      aligned.heading_deg() / bounds.heading_deg(), aligned.nees / found, aligned.overconfident,
+      corners.overconfident);
   std::fflush(stdout);
   return {{"case", name},
           {"shown", aligned.shown},
@@ -170,7 +171,8 @@ nlohmann::json report_accuracy(const std::string& name, const Errors& aligned,
           {"bound_px", bounds.place_px()},
           {"bound_deg", bounds.heading_deg()},
           {"nees", aligned.nees / found},
-          {"beyond_six_sigma", aligned.overconfident}};
+          {"beyond_six_sigma", aligned.overconfident},
+          {"corners_beyond_six_sigma", corners.overconfident}};
 }
 
 // The bound is that of the frame before it was spoilt.
