@@ -107,6 +107,41 @@ TEST(ExtendedStateObserver, FindsConstantForcesExactlyWhereverTheHeadingWraps) {
   EXPECT_LT((observer.velocity() - end_s * acceleration).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+/// The velocity that the continuous observer reads at a constant speed of 1, if it is integrated in
+/// small steps while each measured position is held for a tick.
+double velocity_of_held_positions(double bandwidth_radps) {
+  const ObserverGains gains = gains_of_bandwidth(bandwidth_radps, 1.0);
+  constexpr int kSteps = 1000;
+  const double h = kTick_s / kSteps;
+  double position = 0.0;
+  double velocity = 1.0;
+  double disturbance = 0.0;
+  for (int k = 1; k <= 400; ++k) {
+    for (int step = 0; step < kSteps; ++step) {
+      const double error = k * kTick_s - position;
+      const double acceleration = disturbance + gains.velocity_per_s2 * error;
+      position += h * (velocity + gains.position_per_s * error);
+      velocity += h * acceleration;
+      disturbance += h * gains.disturbance_n_per_m_per_s * error;
+    }
+  }
+  return velocity;
+}
+
+TEST(ExtendedStateObserver, ReadsAConstantVelocityRightWhichHeldPositionsDoNot) {
+  for (const double w : {10.0 / 3.0, 5.0, 10.0}) {
+    // Too low by lv T^2 / 12 = (w T)^2 / 4: at the tick's ends the held error's integral is lowest.
+    EXPECT_NEAR(1.0 - velocity_of_held_positions(w), 0.25 * std::pow(w * kTick_s, 2), 0.006) << w;
+    ExtendedStateObserver observer(of_bandwidth(w), kInertia, kTick_s);
+    observer.start({});
+    for (int k = 1; k <= 400; ++k) {
+      observer.predict(Eigen::Vector3d::Zero());
+      observer.correct({k * kTick_s, 0.0, 0.0});
+    }
+    EXPECT_NEAR(observer.velocity().x(), 1.0, 1e-9) << w;
+  }
+}
+
 TEST(ExtendedStateObserver, DivergesWithThePrintedGains) {
   ExtendedStateObserver observer(same({10.0, 0.2, 100.0}), kInertia, kTick_s);
   observer.start({});
