@@ -15,7 +15,7 @@ void add_errors(RoverSummary& sum, const RoverRecord& record) {
     const Eigen::Vector3d error = fusion::pose_difference(tick.estimate, tick.truth).cwiseAbs();
     sum.iae_xy_m += error.x() + error.y();
     sum.iae_heading_rad += error.z();
-    mae_xy_m = std::max({mae_xy_m, error.x(), error.y()});
+    mae_xy_m = std::max(mae_xy_m, error.x() + error.y());
     mae_heading_rad = std::max(mae_heading_rad, error.z());
     deviation_rad = std::max(deviation_rad, std::abs(tick.truth.heading_rad));
     squares += Eigen::Vector2d(error.head<2>().squaredNorm(), error.z() * error.z());

@@ -15,7 +15,7 @@ struct RoverSummary {
   int diverged = 0;
   double diverged_s = 0.0;  ///< mean over those
   double iae_xy_m = 0.0;    ///< sum of |ex| + |ey|
-  double mae_xy_m = 0.0;    ///< largest of |ex|, |ey|
+  double mae_xy_m = 0.0;    ///< largest |ex| + |ey|
   double iae_heading_rad = 0.0;
   double mae_heading_rad = 0.0;
   double position_rms_m = 0.0;

@@ -29,6 +29,18 @@ void RoverNavigator::predict() {
   slam_.move(displacement, sigma.cwiseAbs2().asDiagonal());
 }
 
+void RoverNavigator::observe(std::span<const fusion::Sighting> seen) {
+  reports_.resize(seen.size());
+  if (!settings_.corrects_one_by_one) {
+    slam_.observe(seen, reports_);
+    return;
+  }
+  const std::span<fusion::SightingReport> reports(reports_);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    slam_.observe(seen.subspan(i, 1), reports.subspan(i, 1));
+  }
+}
+
 Eigen::Vector3d RoverNavigator::commanded_velocity() {
   const Eigen::Vector2d here = slam_.pose().position_m();
   Eigen::Vector2d v = settings_.field.attraction_mps(here, tour_.next(here));
@@ -40,8 +52,7 @@ Eigen::Vector3d RoverNavigator::commanded_velocity() {
 
 Eigen::Vector3d RoverNavigator::tick(std::span<const fusion::Sighting> seen) {
   if (has_moved_) predict();
-  reports_.resize(seen.size());
-  slam_.observe(seen, reports_);
+  observe(seen);
   if (has_moved_) velocity_.correct(slam_.pose());
   has_moved_ = true;
   command_ = commanded_velocity();

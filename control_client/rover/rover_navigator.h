@@ -25,6 +25,9 @@ struct NavigatorSettings {
   double heading_rate_per_s = 1.0;  ///< the heading is led to 0: r_c = -rate heading
   double reach_m = 0.2;             ///< of way points
   fusion::EkfSlam<>::Settings slam;
+  /// Landmarks seen at one tick correct the map one after the other, each from where the last one
+  /// left it (S4), instead of all at once.
+  bool corrects_one_by_one = false;
 };
 
 /// S4's rover, onboard: it maps landmarks, takes its velocity and its disturbances from the poses
@@ -49,6 +52,7 @@ class RoverNavigator {
 
  private:
   void predict();
+  void observe(std::span<const fusion::Sighting> seen);
   Eigen::Vector3d commanded_velocity();
 
   NavigatorSettings settings_;

@@ -54,7 +54,8 @@ std::vector<Eigen::Vector2d> map_of(const fusion::EkfSlam<>& slam, std::size_t l
 
 RoverRecord run_rover(const RoverWorld& world, const NavigatorSettings& settings,
                       std::uint64_t seed) {
-  constexpr double kDiverged_m = 10.0;
+  constexpr double kLost_m = 1.0;
+  constexpr double kAway_m = 100.0;
   RoverPlant plant(RoverModel(settings.rover), world.losses);
   RoverNavigator navigator(settings, world.way_points_m);
   LandmarkSensor sensor(world, seed);
@@ -79,7 +80,7 @@ RoverRecord run_rover(const RoverWorld& world, const NavigatorSettings& settings
     const RoverTick& now = record.ticks.back();
     const double off_m = (now.estimate.position_m() - now.truth.position_m()).norm();
     const double away_m = (now.truth.position_m() - world.start.position_m()).norm();
-    if (!(off_m < kDiverged_m) || !(away_m < 10.0 * kDiverged_m) || !wheels_n.allFinite()) {
+    if (!(off_m < kLost_m) || !(away_m < kAway_m) || !wheels_n.allFinite()) {
       record.diverged_s = time_s;
       break;
     }

@@ -39,7 +39,7 @@ struct RoverRecord {
   std::vector<Eigen::Vector2d> map_m;  ///< at the end, as the landmarks of the world
   double nis = 0.0;                    ///< mean of the sightings; expectation 2
   double tour_done_s = -1.0;           ///< below 0: never
-  double diverged_s = -1.0;  ///< when it ended early, more than 10 m off; below 0: it did not
+  double diverged_s = -1.0;  ///< when it ended early, more than 1 m off; below 0: it did not
 };
 
 /// A run in simulated time; a seed is a run, on every machine.

@@ -50,6 +50,12 @@ void add_even(std::vector<RoverVariant>& variants, const std::string& name,
   }
 }
 
+/// S4's filter: the textbook's error, and one landmark after the other.
+void map_as_s4(NavigatorSettings& settings) {
+  settings.slam.error = fusion::ErrorKind::kTextbook;
+  settings.corrects_one_by_one = true;
+}
+
 }  // namespace
 
 std::array<fusion::ObserverGains, 3> observer_of_bandwidth(double bandwidth_radps,
@@ -77,6 +83,7 @@ std::vector<RoverVariant> rover_variants() {
        with_observer({kPrintedObserver, kPrintedObserver, kPrintedObserver})},
       {"unscaled_pid", "no observer, PID unscaled on heading", false, unscaled},
   };
+  for (RoverVariant& variant : variants) map_as_s4(variant.settings);
   add_even(variants, "_tight", "looks first, tight: ", kTight);
   add_even(variants, "_wide", "looks first, wide: ", kWide);
   return variants;

@@ -61,8 +61,44 @@ TEST(RoverRun, TheObserverMoreThanHalvesTheErrorOfPredictingByTheCommand) {
   EXPECT_LT(observer.heading_deviation_rad, command.heading_deviation_rad);
 }
 
+TEST(RoverRun, TheObserverBeatsSmoothedDifferencesByAFifth) {
+  const RoverSummary differences = runs_of("differences", 100);
+  for (const char* name : {"eso5", "eso10"}) {
+    EXPECT_LT(runs_of(name, 100).iae_xy_m, 0.8 * differences.iae_xy_m) << name;
+  }
+}
+
 TEST(RoverRun, LookingBeforeDrivingIsWorthHalfTheError) {
   EXPECT_LT(runs_of("eso10_tight", 5).position_rms_m, 0.6 * runs_of("eso10", 5).position_rms_m);
+}
+
+TEST(RoverNavigator, CorrectsByOneLandmarkAfterTheOtherAsItsFilterDoes) {
+  NavigatorSettings settings;
+  settings.velocity.observer = observer_of_bandwidth(5.0, settings.rover);
+  settings.corrects_one_by_one = true;
+  RoverNavigator navigator(settings, {{3.0, 3.0}});
+  fusion::EkfSlam<> expected(settings.slam);
+  const fusion::PoseCovariance loose = 1e-2 * fusion::PoseCovariance::Identity();
+  navigator.start({1.0, 1.0, 0.0}, loose);
+  expected.start({1.0, 1.0, 0.0}, loose);
+  fusion::Sighting near{{2.0, 0.1}, fusion::sighting_covariance(0.03, 0.002), 4};
+  fusion::Sighting far{{5.0, -0.8}, fusion::sighting_covariance(0.03, 0.002), 7};
+  // Twice in a scan: one after the other, the second corrects what the first made.
+  fusion::Sighting again = near;
+  again.measured = {2.05, 0.103};
+  const std::vector<fusion::Sighting> scan{near, far, again};
+  navigator.tick(scan);
+  for (const fusion::Sighting& each : scan) {
+    fusion::SightingReport report;
+    expected.observe({&each, 1}, {&report, 1});
+  }
+  ASSERT_EQ(navigator.reports().size(), 3u);
+  EXPECT_EQ(navigator.reports()[0].verdict, fusion::SightingVerdict::kNew);
+  EXPECT_EQ(navigator.reports()[1].verdict, fusion::SightingVerdict::kNew);
+  EXPECT_EQ(navigator.reports()[2].verdict, fusion::SightingVerdict::kUsed);
+  EXPECT_EQ(navigator.slam().pose().x_m, expected.pose().x_m);
+  EXPECT_EQ(navigator.slam().pose().heading_rad, expected.pose().heading_rad);
+  EXPECT_EQ(navigator.slam().landmark_m(0), expected.landmark_m(0));
 }
 
 TEST(NeesBand, IsThatOfTheTables) {
