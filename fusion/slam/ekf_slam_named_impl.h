@@ -1,6 +1,8 @@
 #pragma once
 
-// The functions of EkfSlam that judge sightings by their names; included by its header alone.
+// The functions of EkfSlam for sightings with names; included by its header alone.
+
+#include <cassert>
 
 #include "fusion/slam/ekf_slam.h"
 
@@ -48,6 +50,20 @@ void EkfSlam<OdometryError, SensorError>::widen_pose() {
   covariance_.predict(HeadMatrix::Identity(), noise);
   covariance_.catch_up();
   ++recoveries_;
+}
+
+template <OdometryErrorModel OdometryError, SensorErrorModel SensorError>
+void EkfSlam<OdometryError, SensorError>::observe(std::span<const Sighting> sightings,
+                                                  std::span<SightingReport> reports) {
+  assert(reports.size() == sightings.size());
+  covariance_.catch_up();
+  judge_named(sightings, reports);
+  if (is_lost(reports)) {
+    widen_pose();
+    judge_named(sightings, reports);
+  }
+  correct_by_used(sightings, reports);
+  add_new(sightings, reports, true);
 }
 
 }  // namespace nadir::fusion

@@ -2,6 +2,9 @@
 
 // The functions of EkfSlam for sightings without names; included by its header alone.
 
+#include <algorithm>
+#include <cassert>
+
 #include "fusion/slam/ekf_slam.h"
 
 namespace nadir::fusion {
