@@ -81,11 +81,15 @@ std::vector<nadir::bench::SearchCase> speed_cases() {
   };
   constexpr auto kSource = nadir::tracker::PoseSource::kAlignment;
   const nadir::vision::Scene league = standing("league_even");
+  // The same robots, as large in pixels, under a camera that shows four times the floor.
+  nadir::vision::Scene wide = nadir::bench::enlarged(league, 2);
+  wide.camera.height_m += league.camera.height_m - league.layouts.front().height_m;
   nadir::vision::Scene hundred = standing("pair_even");
   hundred.camera = league.camera;
   hundred.random_robots.front().count = 100;
   return {{"12 league", league, kSource},
           {"12 league x2", nadir::bench::enlarged(league, 2), kSource},
+          {"12 league wide", wide, kSource},
           {"100 pairs", hundred, kSource}};
 }
 
