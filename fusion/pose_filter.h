@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "fusion/correction.h"
 #include "fusion/gap_motion.h"
 #include "fusion/gate.h"
 #include "fusion/linearization.h"
@@ -13,17 +14,6 @@
 #include "fusion/white_odometry_noise.h"
 
 namespace nadir::fusion {
-
-/// What a measured pose did, and what it was compared with.
-struct Correction {
-  PoseVerdict verdict = PoseVerdict::kNotFinite;
-  /// Measured minus predicted, order x, y, heading, the heading wrapped; zero for kStarted and
-  /// poses that were refused.
-  Eigen::Vector3d innovation = Eigen::Vector3d::Zero();
-  /// Of the innovation: predicted covariance plus the measured pose's, before any inflation.
-  Eigen::Matrix3d innovation_covariance = Eigen::Matrix3d::Zero();
-  double nis = 0.0;  ///< normalised innovation squared, expectation 3
-};
 
 /// Kalman filter of a planar pose, and of the error states of its odometry where the model has
 /// some, from mean body rates and measured poses (S0 II.B, S2 section 4, S3; theory 3). A value:

@@ -76,10 +76,7 @@ Correction PoseFilter<Linearization, OdometryError>::correct(const PlanarPose& m
     correction.verdict = PoseVerdict::kStarted;
     return correction;
   }
-  correction.innovation = pose_difference(measured, state_.pose);
-  correction.innovation_covariance = state_.pose_covariance() + r;
-  correction.nis =
-      correction.innovation.dot(correction.innovation_covariance.inverse() * correction.innovation);
+  correction.compare(measured, r, state_.pose, state_.pose_covariance());
   if (settings_.gate.passes(correction.innovation, correction.innovation_covariance,
                             correction.nis)) {
     apply(correction.innovation, r);

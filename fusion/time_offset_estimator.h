@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "fusion/body_rates.h"
+#include "fusion/correction.h"
 #include "fusion/planar_pose.h"
-#include "fusion/pose_filter.h"
 #include "fusion/timestamp.h"
 
 namespace nadir::fusion {

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "fusion/correction.h"
 #include "fusion/fuse/fuse_config.h"
 #include "fusion/fuse/fuse_logs.h"
 #include "fusion/fusion_health.h"
 #include "fusion/motion_lag.h"
-#include "fusion/pose_filter.h"
 
 namespace nadir::fusion {
 

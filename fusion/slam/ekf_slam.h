@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "fusion/correction.h"
 #include "fusion/gate.h"
 #include "fusion/odometry_step.h"
 #include "fusion/planar_pose.h"
-#include "fusion/pose_filter.h"
 #include "fusion/slam/association.h"
 #include "fusion/slam/map_covariance.h"
 #include "fusion/slam/range_bearing.h"

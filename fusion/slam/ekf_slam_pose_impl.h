@@ -2,9 +2,9 @@
 
 // The function of EkfSlam that takes a measured pose; included by its header alone.
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "fusion/measured_pose.h"
 #include "fusion/sine_cosine.h"
 #include "fusion/slam/ekf_slam.h"
 
@@ -20,10 +20,7 @@ Correction EkfSlam<OdometryError, SensorError>::correct(const PlanarPose& measur
   }
   covariance_.catch_up();
   const PoseCovariance r = symmetric_part(covariance);
-  correction.innovation = pose_difference(measured, pose_);
-  correction.innovation_covariance = pose_covariance() + r;
-  correction.nis =
-      correction.innovation.dot(correction.innovation_covariance.inverse() * correction.innovation);
+  correction.compare(measured, r, pose_, pose_covariance());
   correction.verdict = settings_.pose_gate.passes(correction.innovation,
                                                   correction.innovation_covariance, correction.nis)
                            ? PoseVerdict::kAccepted
