@@ -119,16 +119,16 @@ void TagRobots::expect(const vision::Frame& frame, const Memory& robot, const Me
   const double unknown_m =
       robot.has_velocity ? kAcceleration_mps2 * ahead_s * ahead_s : kFastest_mps * ahead_s;
   const double margin_px = kMargin_px + std::min(scale * unknown_m, kMostMargin_sides * side_px);
+  const bool may_align = settings_.aligned && robot.has_velocity && robot.missed == 0;
+  if (may_align && next != nullptr) {
+    aligners_[robot.kind].fetch_meanwhile(pixels_of(frame.image, *next));
+  }
   for (const vision::MountedTag& tag : robot.tags) {
     Sighting sighting{.kind = robot.kind, .robot_id = robot.id, .tag_id = tag.tag_id, .pose = {}};
     sighting.pose.mount = tag.mount;
     sighting.pose.pose_world_tag = mounted_pose(pose, tag.mount);
     sighting.pose.centre_px =
         pixel_near(kind.map, sighting.pose.pose_world_tag.position_m(), robot.centre_px);
-    const bool may_align = settings_.aligned && robot.has_velocity && robot.missed == 0;
-    if (may_align && next != nullptr) {
-      aligners_[robot.kind].fetch_meanwhile(pixels_of(frame.image, *next));
-    }
     // One tag a frame tells of noise and blur.
     const bool teach = sightings_.size() == frames_ % std::max<std::size_t>(memories_.size(), 1);
     if (may_align && align(frame.image, sighting, teach)) {
