@@ -23,6 +23,9 @@ struct ControlParameters {
   LoopParameters inner{0.7, 40.0, 0.9, 20.0};
   double tick_s = 0.02;  ///< period of estimate and outer loop
   int inner_steps = 4;   ///< inner loop steps a tick: 1 is 50 Hz, 4 is 200 Hz
+  /// On board the inner loop is so soft that wheels with slip times down to minus this do not swing
+  /// it (slip_tolerance.h), s; 0: as stiff as `inner` says.
+  double tolerated_slip_s = 0.08;
 
   double inner_step_s() const { return tick_s / inner_steps; }
 };

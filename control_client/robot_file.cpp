@@ -64,6 +64,8 @@ ControlParameters read_control(const YamlMap& map) {
   ControlParameters control;
   control.tick_s = map.number_or("tick_s", control.tick_s, {0.001, 0.2});
   control.inner_steps = map.integer_or("inner_steps", control.inner_steps, {1.0, 100.0});
+  control.tolerated_slip_s =
+      map.number_or("tolerated_slip_s", control.tolerated_slip_s, {0.0, 1.0});
   if (const auto outer = map.map_if_present("outer")) {
     control.outer = read_loop(*outer, control.outer);
   }

@@ -22,6 +22,10 @@ struct WheelSlipParameters {
   double slip_correlation_s = 1.0;
   /// White noise of a rim speed measured over 0.02 s: quantisation and roughness of the ground.
   double rim_noise_mps = 0.006;
+  /// What of a slip time cannot be learnt, as it changes within a tenth of a second or because the
+  /// wheel's measured acceleration is not the true one, s. White noise in proportion to the
+  /// acceleration: in a hard start or stop the poses are believed more than the wheels.
+  double unlearnt_slip_sigma_s = 0.0;
 };
 
 /// Odometry errors with their causes. For every wheel i a scale e_i, constant, and a slip time l_i
@@ -51,7 +55,8 @@ class WheelSlipError {
       : parameters_(parameters) {
     if (geometry.wheels() != kWheels) throw std::invalid_argument("other number of wheels");
     if (!(parameters.scale_sigma >= 0.0 && parameters.slip_time_sigma_s >= 0.0 &&
-          parameters.rim_noise_mps >= 0.0 && parameters.slip_correlation_s > 0.0)) {
+          parameters.rim_noise_mps >= 0.0 && parameters.unlearnt_slip_sigma_s >= 0.0 &&
+          parameters.slip_correlation_s > 0.0)) {
       throw std::invalid_argument("negative standard deviation or no correlation time");
     }
     rims_by_rates_ = geometry.rims_by_rates();
@@ -59,8 +64,8 @@ class WheelSlipError {
       rates_by_rims_.col(i) = geometry.body_rates(WheelValues::Unit(kWheels, i)).vector();
     }
     constexpr double kNoiseInterval_s = 0.02;
-    white_intensity_ = rates_by_rims_ * rates_by_rims_.transpose() *
-                       (parameters.rim_noise_mps * parameters.rim_noise_mps * kNoiseInterval_s);
+    rim_intensity_ = square(parameters.rim_noise_mps) * kNoiseInterval_s;
+    unlearnt_intensity_s3_ = square(parameters.unlearnt_slip_sigma_s) * kUnlearntFor_s;
   }
 
   const WheelSlipParameters& parameters() const { return parameters_; }
@@ -82,7 +87,9 @@ class WheelSlipError {
     result.rates = BodyRates::from(rates_by_rims_ * corrected_speed);
     result.by_error.template leftCols<kWheels>() = -rates_by_rims_ * speed.asDiagonal();
     result.by_error.template rightCols<kWheels>() = -rates_by_rims_ * acceleration.asDiagonal();
-    result.white_intensity = white_intensity_;
+    const Wheels intensity =
+        (unlearnt_intensity_s3_ * acceleration.array().square() + rim_intensity_).matrix();
+    result.white_intensity = rates_by_rims_ * intensity.asDiagonal() * rates_by_rims_.transpose();
     return result;
   }
 
@@ -97,12 +104,14 @@ class WheelSlipError {
 
  private:
   using Wheels = Eigen::Matrix<double, kWheels, 1>;
+  static constexpr double kUnlearntFor_s = 0.1;  ///< a slip that is not learnt acts so long
   static constexpr double square(double x) { return x * x; }
 
   WheelSlipParameters parameters_;
   Eigen::Matrix<double, kWheels, 3> rims_by_rates_;
   Eigen::Matrix<double, 3, kWheels> rates_by_rims_;
-  Eigen::Matrix3d white_intensity_;
+  double rim_intensity_ = 0.0;          ///< of a rim speed's white noise, (m/s)^2 s
+  double unlearnt_intensity_s3_ = 0.0;  ///< the same for an acceleration of 1 m/s^2
 };
 
 static_assert(OdometryErrorModel<WheelSlipError<3>>);

@@ -145,6 +145,7 @@ void fusion_part(Io& io, OnboardFusionSettings* fusion) {
   io.number("slip_time_sigma_s", {0.0, 10.0}, &fusion->wheel_slip.slip_time_sigma_s);
   io.number("slip_correlation_s", kTime_s, &fusion->wheel_slip.slip_correlation_s);
   io.number("rim_noise_mps", {0.0, 10.0}, &fusion->wheel_slip.rim_noise_mps);
+  io.number("unlearnt_slip_sigma_s", {0.0, 10.0}, &fusion->wheel_slip.unlearnt_slip_sigma_s);
   io.number("white_rim_sigma_mps", kSigma, &fusion->white_rim_sigma_mps);
   io.number("gate", {0.1, 1e6}, &fusion->gate.threshold);
   io.integer("recover_after_poses", {0.0, 1e6}, &fusion->recovery.poses);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "control_client/slip_tolerance.h"
+
 namespace nadir::control_client {
 namespace {
 
@@ -33,6 +35,7 @@ class OwningBase : public RobotBase {
 DrivenRobot load_omnidirectional_robot(const std::filesystem::path& file) {
   DrivenRobot robot;
   if (!file.empty()) robot.config = load_robot(file);
+  robot.config.control = tolerating_slip(RobotModel(robot.config.robot), robot.config.control);
   robot.simulated = [config = robot.config](const SimulationSettings& settings,
                                             fusion::Timestamp now,
                                             SimulatedBase::TruthSink on_truth) {

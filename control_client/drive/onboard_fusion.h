@@ -28,10 +28,10 @@ enum class OdometryModel : std::uint8_t {
 };
 
 struct OnboardFusionSettings {
-  OdometryModel model = OdometryModel::kWhite;
-  fusion::WheelSlipParameters wheel_slip;
-  double white_rim_sigma_mps =
-      0.06;  ///< of kWhite, over 0.02 s; twice the papers': frames are good
+  OdometryModel model = OdometryModel::kWheelSlip;
+  fusion::WheelSlipParameters wheel_slip{.unlearnt_slip_sigma_s = 0.01};
+  /// Of kWhite, over 0.02 s; twice the papers': frames are good.
+  double white_rim_sigma_mps = 0.06;
   fusion::Gate gate = fusion::Gate::chi_square();
   fusion::LockOutRecovery recovery;
 };

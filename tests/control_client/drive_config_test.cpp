@@ -33,7 +33,7 @@ TEST(DriveConfig, WhatIsPrintedReadsBackTheSame) {
   config.place = {0.5, -0.25, 0.0};
   config.plan.nominal.kind = NominalKind::kFiltered;
   config.plan.repeats = true;
-  config.fusion.model = OdometryModel::kWheelSlip;
+  config.fusion.model = OdometryModel::kWhite;
   config.safety.off_track_m = {0.2, 0.4};
   config.start.emplace(0.1, 0.2, 0.0);
   config.simulation.seed = 99;
@@ -42,7 +42,7 @@ TEST(DriveConfig, WhatIsPrintedReadsBackTheSame) {
   const DriveConfig again = load_drive_config(folder.write("drive.yaml", text));
   EXPECT_EQ(drive_config_yaml(again), text);
   EXPECT_EQ(again.output, tracker::WheelCommandKind::kRimSpeeds);
-  EXPECT_EQ(again.fusion.model, OdometryModel::kWheelSlip);
+  EXPECT_EQ(again.fusion.model, OdometryModel::kWhite);
   EXPECT_EQ(again.safety.off_track_m.stop, 0.4);
   EXPECT_EQ(again.start->y(), 0.2);
 }

@@ -68,6 +68,57 @@ Rehearsal on(const char* trajectory, std::uint64_t seed = 1) {
   return {repeating(), standard_trajectory(trajectory), seed};
 }
 
+/// Mean over the draws of twelve robots' wheels, 30 s each.
+Quality mean_quality(const char* trajectory, const DriveSettings& settings) {
+  constexpr std::uint64_t kRobots = 12;
+  Quality mean;
+  for (std::uint64_t seed = 1; seed <= kRobots; ++seed) {
+    Rehearsal rehearsal(settings, standard_trajectory(trajectory), seed);
+    rehearsal.run(1.0);
+    const Quality quality = quality_of(rehearsal.run(30.0));
+    mean.position_rms_m += quality.position_rms_m / kRobots;
+    mean.heading_rms_rad += quality.heading_rms_rad / kRobots;
+    mean.tracking_rms_m += quality.tracking_rms_m / kRobots;
+  }
+  return mean;
+}
+
+// Whatever wheels the robot has: a slip that a stiff inner loop amplifies must not swing it, and
+// what the filter learns of the wheels must not mislead it where they slip hard.
+TEST(DriveCore, DrivesWithAnyWheels) {
+  constexpr double kDegree = M_PI / 180.0;
+  for (const char* trajectory : {"circle", "rose3", "rose4"}) {
+    const Quality quality = mean_quality(trajectory, repeating());
+    EXPECT_LT(quality.position_rms_m, 0.0007) << trajectory;
+    EXPECT_LT(quality.heading_rms_rad, 0.25 * kDegree) << trajectory;
+    EXPECT_LT(quality.tracking_rms_m, 0.0015) << trajectory;
+  }
+  for (const char* trajectory : {"square-turning", "square"}) {
+    const Quality quality = mean_quality(trajectory, repeating());
+    EXPECT_LT(quality.position_rms_m, 0.0013) << trajectory;
+    EXPECT_LT(quality.heading_rms_rad, 0.5 * kDegree) << trajectory;
+    EXPECT_LT(quality.tracking_rms_m, 0.003) << trajectory;
+  }
+}
+
+TEST(DriveCore, KnowingItsWheelsIsBetterThanWhiteNoise) {
+  DriveSettings white = repeating();
+  white.fusion.model = OdometryModel::kWhite;
+  for (const char* trajectory : {"circle", "square-turning"}) {
+    const Quality learnt = mean_quality(trajectory, repeating());
+    const Quality constant = mean_quality(trajectory, white);
+    EXPECT_LT(learnt.position_rms_m, constant.position_rms_m) << trajectory;
+    EXPECT_LT(learnt.heading_rms_rad, constant.heading_rms_rad) << trajectory;
+  }
+}
+
+TEST(DriveCore, AStiffInnerLoopSwingsOnSlippingWheels) {
+  DriveSettings stiff = repeating();
+  stiff.control.tolerated_slip_s = 0.0;
+  EXPECT_GT(mean_quality("circle", stiff).heading_rms_rad,
+            1.5 * mean_quality("circle", repeating()).heading_rms_rad);
+}
+
 TEST(DriveCore, KnowsWhereItIsAndFollowsEveryTrajectory) {
   for (const char* trajectory : {"square-turning", "square", "circle", "rose3", "rose4"}) {
     Rehearsal rehearsal = on(trajectory);

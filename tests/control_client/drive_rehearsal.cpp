@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control_client/slip_tolerance.h"
+
 namespace nadir::control_client {
 
 using fusion::Timestamp;
@@ -10,6 +12,11 @@ using fusion::Timestamp;
 namespace {
 
 constexpr Timestamp kStep = std::chrono::milliseconds(5);
+
+DriveSettings on_board(DriveSettings settings, const RobotModel& model) {
+  settings.control = tolerating_slip(model, settings.control);
+  return settings;
+}
 
 SimulationSettings simulation(const Eigen::Vector3d& start, std::uint64_t seed) {
   SimulationSettings settings;
@@ -22,9 +29,9 @@ SimulationSettings simulation(const Eigen::Vector3d& start, std::uint64_t seed) 
 
 Rehearsal::Rehearsal(const DriveSettings& settings, TrajectoryPtr trajectory, std::uint64_t seed,
                      const std::optional<Eigen::Vector3d>& start)
-    : settings_(settings),
-      core_(model_, settings, trajectory),
-      base_(model_, settings.control.inner,
+    : settings_(on_board(settings, model_)),
+      core_(model_, settings_, trajectory),
+      base_(model_, settings_.control.inner,
             simulation(start.value_or(trajectory->at(0.0).pose), seed), now_, {}),
       random_(seed, RandomPurpose::kVision) {}
 

@@ -33,7 +33,7 @@ struct RehearsalRow {
   std::optional<fusion::Estimate> estimate;
 };
 
-/// DriveCore with simulated robot, tracker and network in simulated time: no thread, no clock, no
+/// DriveCore with simulated robot (omni3, its inner loop as on board), tracker and network in simulated time: no thread, no clock, no
 /// DDS; the same on every machine. Members may be changed between calls of run.
 class Rehearsal {
  public:
@@ -68,8 +68,8 @@ class Rehearsal {
     return robot_time.count() + vision.clock_ahead_ns + tracker_clock_jump_ns;
   }
 
-  DriveSettings settings_;
   RobotModel model_{RobotParameters{}};
+  DriveSettings settings_;
   fusion::Timestamp now_{std::chrono::seconds(1000)};
   DriveCore core_;
   SimulatedBase base_;

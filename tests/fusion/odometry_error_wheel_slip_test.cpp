@@ -74,6 +74,27 @@ TEST(WheelSlipError, StandingRobotHasNoErrorsButWhiteNoise) {
   EXPECT_LT((corrected.white_intensity - expected).norm(), 1e-12);
 }
 
+TEST(WheelSlipError, WhatIsNotLearntIsNoiseInProportionToTheAcceleration) {
+  const OdometryStep step = accelerating_step();
+  const auto extra = [&](double unlearnt_s) -> Eigen::Matrix3d {
+    const Three model(geometry(), {.rim_noise_mps = 0.0, .unlearnt_slip_sigma_s = unlearnt_s});
+    return model.corrected(step, Three::ErrorState::Zero()).white_intensity;
+  };
+  EXPECT_EQ(extra(0.0).norm(), 0.0);
+  EXPECT_LT((extra(0.02) - 4.0 * extra(0.01)).norm(), 1e-15);
+  // Of each wheel (sigma a)^2 for a tenth of a second, in the direction in which it drives.
+  const WheelValues acceleration = (geometry().rim_speeds_mps(step.mean_rates) -
+                                    geometry().rim_speeds_mps(step.previous_rates)) /
+                                   step.interval_s;
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d rates = geometry().body_rates(WheelValues::Unit(3, i)).vector();
+    expected += std::pow(0.01 * acceleration[i], 2) * 0.1 * rates * rates.transpose();
+  }
+  EXPECT_LT((extra(0.01) - expected).norm(), 1e-12 * expected.norm());
+  EXPECT_THROW(Three(geometry(), {.unlearnt_slip_sigma_s = -0.01}), std::invalid_argument);
+}
+
 TEST(WheelSlipError, SlipTimesAreAStationaryGaussMarkovProcess) {
   const Three model(geometry(), {0.02, 0.03, 0.7, 0.006});
   OdometryStep step = accelerating_step();
