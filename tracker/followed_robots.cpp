@@ -77,6 +77,7 @@ void FollowedRobots::follow(const vision::Frame& frame) {
   }
   needs_full_search_ = full_searches_due_ > 0;
   full_searches_due_ = std::max(0, full_searches_due_ - 1);
+  aligned_robots_ = frames_;  // so that in time each of them teaches, however many they are
   for (FollowedRobot& robot : robots_) {
     robot.found = false;
     robot.continued = false;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tracker/alignment/disc_misfit.h"
+
 namespace nadir::tracker {
 namespace {
 
@@ -43,8 +45,12 @@ void DiscState::start(const DiscEdge& edge, const Eigen::Vector2d& centre_m) {
 }
 
 void DiscState::start_anew(const DiscEdge& edge, const Eigen::Vector2d& centre_m) {
-  find_shares_and_blur(patch, edge, centre_m, shares);
+  find_shares(patch, edge, centre_m, shares);
   shares_centre_m_ = centre_m;
+}
+
+void DiscState::look_at_blur(const DiscEdge& edge) {
+  find_shares_and_blur(patch, edge, shares_centre_m_, shares);
 }
 
 void DiscState::set_neighbour(int k, const DiscEdge& edge, const Eigen::Vector2d& centre_m,
@@ -99,64 +105,32 @@ CentreEvidence DiscState::evaluate(const DiscEdge& edge, const Eigen::Vector2d& 
 
 double DiscState::structure(const CentreEvidence& evidence, const PixelNoise& noise,
                             const OutlierLimits& limits) {
-  std::array<Eigen::Vector2d, 8> pull_of_sector;
-  pull_of_sector.fill(Eigen::Vector2d::Zero());
+  SectorPulls pulls;
+  pulls.fill(Eigen::Vector2d::Zero());
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);
-    const double contrast = levels[channel].contrast;
-    const Normal n = normal_of(sums_[channel], contrast);
-    if (!n.solvable) continue;
-    pulls_of(patch, shares, model(c, noise, limits), pulls_.data());
-    // A pixel pulls by its derivative less what level and contrast would take of it.
-    const Eigen::Matrix2f taken = (n.aa_inverse * n.ab).cast<float>();
-    const auto k = static_cast<float>(contrast);
-    for (int i = patch.begin[channel]; i < patch.end[channel]; ++i) {
-      const auto p = static_cast<std::size_t>(i);
-      const float x = shares.by_x[p];
-      const float y = shares.by_y[p];
-      const float share = shares.share[p];
-      const std::size_t sector =
-          (x > 0.0F ? 1 : 0) + (y > 0.0F ? 2 : 0) + (std::abs(x) > std::abs(y) ? 4 : 0);
-      pull_of_sector[sector].x() +=
-          static_cast<double>(pulls_[p] * (k * x - taken(0, 0) - taken(1, 0) * share));
-      pull_of_sector[sector].y() +=
-          static_cast<double>(pulls_[p] * (k * y - taken(0, 1) - taken(1, 1) * share));
-    }
+    const Normal n = normal_of(sums_[channel], levels[channel].contrast);
+    if (n.solvable) add_pulls(patch, shares, model(c, noise, limits), n.aa_inverse * n.ab, pulls);
   }
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
-  for (const Eigen::Vector2d& pull : pull_of_sector) scatter += pull * pull.transpose();
+  for (const Eigen::Vector2d& pull : pulls) scatter += pull * pull.transpose();
   return 0.5 * (evidence.information.inverse() * scatter).trace();
 }
 
 DiscState::Slope DiscState::light_slope(const PixelNoise& noise) const {
-  constexpr float kNoEdge = 0.005F;
-  constexpr float kWhite = 253.5F;
   double sum = 0.0;
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   Eigen::Vector2d squares = Eigen::Vector2d::Zero();
   Eigen::Vector2d moment = Eigen::Vector2d::Zero();
   double residual_sum = 0.0;
+  const auto d = [](float value) { return static_cast<double>(value); };
   for (int c = 0; c < 3; ++c) {
-    const auto channel = static_cast<std::size_t>(c);
-    const float* const below = neighbours[0] < 0 ? nullptr : base_[channel].data();
-    const ChannelLevels& fitted = levels[channel];
-    for (int i = patch.begin[channel]; i < patch.end[channel]; ++i) {
-      const auto p = static_cast<std::size_t>(i);
-      const float share = shares.share[p];
-      if (patch.use[p] == 0.0F || patch.value[channel][p] > kWhite) continue;
-      if (share > kNoEdge && share < 1.0F - kNoEdge) continue;
-      const double model = fitted.level + fitted.contrast * static_cast<double>(share) +
-                           (below != nullptr ? static_cast<double>(below[i]) : 0.0);
-      if (model < 1.0) continue;
-      const double relative = static_cast<double>(patch.value[channel][p]) / model - 1.0;
-      const double weight = model * model / noise.variance(model);
-      const Eigen::Vector2d at(static_cast<double>(patch.du[p]), static_cast<double>(patch.dv[p]));
-      sum += weight;
-      residual_sum += weight * relative;
-      place += weight * at;
-      squares += weight * at.cwiseAbs2();
-      moment += weight * relative * at;
-    }
+    const LightSums sums = sum_light(patch, shares, model(c, noise, {}));
+    sum += d(sums.n);
+    residual_sum += d(sums.r);
+    place += Eigen::Vector2d(d(sums.u), d(sums.v));
+    squares += Eigen::Vector2d(d(sums.uu), d(sums.vv));
+    moment += Eigen::Vector2d(d(sums.ru), d(sums.rv));
   }
   if (!(sum > 0.0)) return {};
   place /= sum;

@@ -35,6 +35,8 @@ class DiscState {
   void start(const DiscEdge& edge, const Eigen::Vector2d& centre_m);
   /// After pixels were gathered anew for a disc whose levels are known.
   void start_anew(const DiscEdge& edge, const Eigen::Vector2d& centre_m);
+  /// Adds the derivatives by the blur to the shares.
+  void look_at_blur(const DiscEdge& edge);
   /// Shares of the pixels in the k-th neighbour's disc, with the neighbour's present contrast.
   void set_neighbour(int k, const DiscEdge& edge, const Eigen::Vector2d& centre_m,
                      const std::array<ChannelLevels, 3>& levels_of_neighbour);
@@ -66,7 +68,6 @@ class DiscState {
   std::array<ChannelSums, 3> sums_;
   alignas(32) std::array<std::array<float, kPatchCapacity>, 3> base_;
   alignas(32) std::array<float, kPatchCapacity> neighbour_share_;
-  alignas(32) std::array<float, kPatchCapacity> pulls_;
 };
 
 }  // namespace nadir::tracker

@@ -1,6 +1,6 @@
 #include "tracker/alignment/disc_sums.h"
 
-#include "tracker/alignment/lanes.h"
+#include "tracker/alignment/channel_fit.h"
 #include "vision/vector_clones.h"
 
 namespace nadir::tracker {
@@ -11,66 +11,10 @@ using lanes::kLanes;
 using lanes::load;
 using lanes::store;
 using lanes::sum_of;
+using namespace channel_fit;
 
-constexpr float kTiny = 1e-12F;
-constexpr float kWhite = 253.5F;             // grey levels from here on may be more in truth
 constexpr float kWholly = 0.99F;             // a share above or 1 - share below: no edge
 constexpr float kMostScatter_sigmas = 3.5F;  // beyond it is something else than noise
-
-// Values of a model as the loops need them.
-struct ChannelFit {
-  float level, contrast;
-  float variance0, variance_slope;  // of the noise: variance0 + variance_slope * share
-  float huber, huber2;
-  float far, far2;
-};
-
-ChannelFit channel_fit(const ChannelModel& model) {
-  const double outside = model.noise.variance(model.levels.level);
-  const double inside = model.noise.variance(model.levels.level + model.levels.contrast);
-  const auto f = [](double value) { return static_cast<float>(value); };
-  return {f(model.levels.level),
-          f(model.levels.contrast),
-          f(outside),
-          f(inside - outside),
-          f(model.limits.huber_sigmas),
-          f(model.limits.huber_sigmas * model.limits.huber_sigmas),
-          f(model.limits.far_sigmas),
-          f(model.limits.far_sigmas * model.limits.far_sigmas)};
-}
-
-// Eight pixels of a channel: what they show, what they miss, what that counts.
-struct Pixels {
-  Floats use, share, residual, weight;
-};
-
-NADIR_INLINE void judge(const ChannelFit& f, const Floats& value, Pixels& p, const Floats& base) {
-  const Floats model = f.level + f.contrast * p.share + base;
-  p.residual = value - model;
-  Floats variance = f.variance0 + f.variance_slope * p.share;
-  variance = variance > 0.05F ? variance : variance * 0.0F + 0.05F;
-  p.weight = p.use / variance;
-  const Floats squares = p.residual * p.residual * p.weight + kTiny;
-  Floats per_root;
-  lanes::inverse_root<2>(squares, per_root);
-  p.weight = squares > f.huber2 ? p.weight * per_root * f.huber : p.weight;
-  p.weight = squares > f.far2 ? p.weight * per_root * f.far : p.weight;
-  const Floats zero = {};
-  const Floats too_white = model > value ? zero : p.weight;
-  p.weight = value > kWhite ? too_white : p.weight;
-  p.residual = p.weight > zero ? p.residual : zero;
-}
-
-NADIR_INLINE void look_at(const DiscPatch& patch, const DiscShares& shares,
-                          const ChannelModel& model, const ChannelFit& fit, int i, Pixels& p) {
-  Floats value;
-  Floats base = {};
-  load(&patch.use[i], p.use);
-  load(&shares.share[i], p.share);
-  load(&patch.value[model.channel][i], value);
-  if (model.base != nullptr) load(model.base + i, base);
-  judge(fit, value, p, base);
-}
 
 ChannelLevels levels_from(double n, double s, double ss, double v, double sv) {
   const double determinant = n * ss - s * s;
@@ -129,7 +73,7 @@ std::array<ChannelLevels, 3> fit_levels(const DiscPatch& patch, const DiscShares
 NADIR_VECTOR_CLONES
 ChannelSums sum_channel(const DiscPatch& patch, const DiscShares& shares,
                         const ChannelModel& model) {
-  const ChannelFit fit = channel_fit(model);
+  const Fit fit = fit_of(model);
   Floats n = {}, s = {}, x = {}, y = {}, r = {};
   Floats ss = {}, sx = {}, sy = {}, sr = {};
   Floats xx = {}, xy = {}, xr = {}, yy = {}, yr = {}, rr = {};
@@ -169,20 +113,9 @@ ChannelSums sum_channel(const DiscPatch& patch, const DiscShares& shares,
 }
 
 NADIR_VECTOR_CLONES
-void pulls_of(const DiscPatch& patch, const DiscShares& shares, const ChannelModel& model,
-              float* pulls) {
-  const ChannelFit fit = channel_fit(model);
-  for (int i = patch.begin[model.channel]; i < patch.end[model.channel]; i += kLanes) {
-    Pixels p;
-    look_at(patch, shares, model, fit, i, p);
-    store(p.weight * p.residual, pulls + i);
-  }
-}
-
-NADIR_VECTOR_CLONES
 ChannelScatter scatter_of(const DiscPatch& patch, const DiscShares& shares,
                           const ChannelModel& model) {
-  const ChannelFit fit = channel_fit(model);
+  const Fit fit = fit_of(model);
   constexpr int kSums = 20;
   Floats sums[kSums] = {};
   const Floats zero = {};

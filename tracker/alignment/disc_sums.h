@@ -44,10 +44,6 @@ struct ChannelSums {
 ChannelSums sum_channel(const DiscPatch& patch, const DiscShares& shares,
                         const ChannelModel& model);
 
-/// Weight times residual of each pixel of a channel, into a list as long as the patch.
-void pulls_of(const DiscPatch& patch, const DiscShares& shares, const ChannelModel& model,
-              float* pulls);
-
 /// What the residuals of one channel say of noise, light and blur.
 struct ChannelScatter {
   float inside_count = 0, inside_squares = 0;    ///< of pixels wholly in the disc

@@ -61,6 +61,7 @@ bool RobotFit::gather(const FramePixels& frame, const vision::PixelPoint& near_p
   if (!view_.aim(place_, near_px, blur_px, obstacles)) return false;
   for (std::size_t i = 0; i < discs_.size(); ++i) {
     counts_[i] = view_.gather(frame, place_, i, false, discs_[i]);
+    is_whole_[i] = false;
     if (counts_[i]) discs_[i].start(view_.edge(i), centre_m(i));
   }
   gathered_at_ = place_;
@@ -75,6 +76,7 @@ bool RobotFit::must_gather() const {
 
 bool RobotFit::gather_whole(const FramePixels& frame, std::size_t disc) {
   if (!view_.gather(frame, place_, disc, true, discs_[disc])) return false;
+  is_whole_[disc] = true;
   discs_[disc].start_anew(view_.edge(disc), centre_m(disc));
   set_neighbours(disc);
   return true;
@@ -108,9 +110,11 @@ void RobotFit::look_at_structure(const FramePixels& frame, const PixelNoise& noi
   for (std::size_t i = 0; i < discs_.size(); ++i) {
     structure_[i] = 1.0;
     shading_m2_[i] = 0.0;
-    if (!counts_[i] || !is_suspicious(i)) continue;
-    if (!gather_whole(frame, i)) continue;
-    evidence_[i] = discs_[i].evaluate(view_.edge(i), centre_m(i), noise, limits());
+    if (!counts_[i]) continue;
+    if (!is_whole_[i]) {
+      if (!is_suspicious(i) || !gather_whole(frame, i)) continue;
+      evidence_[i] = discs_[i].evaluate(view_.edge(i), centre_m(i), noise, limits());
+    }
     const double chi_square =
         std::max(evidence_[i].chi_square_per_dof(Eigen::Vector2d::Zero()), evidence_[i].pull_ratio);
     structure_[i] =

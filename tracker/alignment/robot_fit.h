@@ -69,6 +69,7 @@ class RobotFit {
   std::array<double, vision::kMaxDiscs> structure_{};
   std::array<double, vision::kMaxDiscs> shading_m2_{};  // variance of a centre by uneven light
   std::array<bool, vision::kMaxDiscs> counts_{};
+  std::array<bool, vision::kMaxDiscs> is_whole_{};  // all of a disc's pixels were gathered
   RobotPlace place_;
   RobotPlace gathered_at_;
   double last_step_px_ = 0.0;

@@ -65,7 +65,8 @@ void add_blur(const ChannelLevels& levels, const ChannelScatter& scatter, BlurEv
 void teach(const cv::Mat& image, Mosaic mosaic, std::size_t disc, RobotFit& fit,
            SensorModel& sensor, const OutlierLimits& limits) {
   if (!fit.counts(disc) || !fit.gather_whole({image, mosaic, sensor.light}, disc)) return;
-  const DiscState& state = fit.disc(disc);
+  DiscState& state = fit.disc(disc);
+  state.look_at_blur(fit.view().edge(disc));
   // Uneven light tells nothing of optics, but a blur that is not known yet looks like it.
   const bool even = !fit.is_uneven(disc);
   BlurEvidence blur;
