@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "tracker/alignment/robot_place.h"
+
 namespace nadir::tracker {
 namespace {
 
@@ -22,6 +24,7 @@ constexpr double kKnownBlur_px = 0.005;
 constexpr unsigned kRobotsPerLesson = 4;
 constexpr double kAgreement_sigmas = 6.0;
 constexpr double kAgreement_px = 1.0;
+constexpr double kEdge_px = 2.5;   // a blurred one, about
 constexpr double kPoor_px = 0.02;  // under a shadow's edge the detector is as good
 
 double seconds(vision::CaptureTime::duration duration) {
@@ -132,12 +135,24 @@ bool FollowedRobots::misses_someone(std::size_t layout,
   return true;
 }
 
-// Those that show a robot, if it has not moved.
-vision::SquareFetch FollowedRobots::pixels_of(const cv::Mat& image,
-                                              const FollowedRobot& robot) const {
-  const vision::PixelPoint& at = robot.aligned.centre_px;
-  return {image, at,
-          aligners_[robot.layout].robot().reach_m / grids_[robot.layout]->metres_per_pixel(at)};
+// Those that will show a robot's discs.
+vision::PixelFetch FollowedRobots::pixels_of(const cv::Mat& image,
+                                             const FollowedRobot& robot) const {
+  const vision::PixelPoint& last_px = robot.aligned.centre_px;
+  const LocalPlane about = grids_[robot.layout]->about(static_cast<int>(std::lround(last_px.x())),
+                                                       static_cast<int>(std::lround(last_px.y())));
+  const Eigen::Matrix2d px_per_m = about.slope.inverse();
+  const double scale = std::sqrt(std::abs(px_per_m.determinant()));
+  const RobotPlace place(predict(robot, last_frame_).pose_world_robot);
+  const DiscTemplate& discs = aligners_[robot.layout].robot();
+  vision::PixelFetch fetch;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(discs.disc_count); ++i) {
+    const Eigen::Vector2d away_m = place.point(discs.place_m[i]) - robot.pose.position_m();
+    const vision::PixelPoint centre_px = last_px + px_per_m * away_m;
+    fetch.add({image, centre_px, scale * discs.radius_m[i] + kEdge_px});
+    grids_[robot.layout]->fetch(centre_px);
+  }
+  return fetch;
 }
 
 // Plates of the other robots of a layout, where they are by now or are expected.

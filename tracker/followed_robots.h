@@ -84,7 +84,7 @@ class FollowedRobots {
   vision::PixelPoint expected_px(const FollowedRobot& robot) const;
   double search_radius_px(const FollowedRobot& robot) const;
   PoseGuess predict(const FollowedRobot& robot, vision::CaptureTime now) const;
-  vision::SquareFetch pixels_of(const cv::Mat& image, const FollowedRobot& robot) const;
+  vision::PixelFetch pixels_of(const cv::Mat& image, const FollowedRobot& robot) const;
   void align(const vision::Frame& frame, FollowedRobot& robot);
   void observe(FollowedRobot& robot) const;
   void teach(const cv::Mat& image, std::size_t layout);

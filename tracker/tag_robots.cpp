@@ -100,10 +100,12 @@ void TagRobots::detect(const vision::Frame& frame) {
 }
 
 // Those that show a robot, if it has not moved.
-vision::SquareFetch TagRobots::pixels_of(const cv::Mat& image, const Memory& robot) const {
+vision::PixelFetch TagRobots::pixels_of(const cv::Mat& image, const Memory& robot) const {
   const double side_px =
       kinds_[robot.kind].layout.size_m / grids_[robot.kind]->metres_per_pixel(robot.centre_px);
-  return {image, robot.centre_px, kFetched_sides * side_px};
+  vision::PixelFetch fetch;
+  fetch.add({image, robot.centre_px, kFetched_sides * side_px});
+  return fetch;
 }
 
 // Where the robot's tags should be now: aligned there, or a place to search. `next`: the robot that

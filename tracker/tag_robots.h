@@ -93,7 +93,7 @@ class TagRobots {
   };
 
   void look_for_mosaic(const cv::Mat& image);
-  vision::SquareFetch pixels_of(const cv::Mat& image, const Memory& robot) const;
+  vision::PixelFetch pixels_of(const cv::Mat& image, const Memory& robot) const;
   void expect(const vision::Frame& frame, const Memory& robot, const Memory* next);
   bool align(const cv::Mat& image, Sighting& sighting, bool teach);
   void take(const cv::Mat& image, const vision::TagSighting& seen);

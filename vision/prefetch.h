@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <opencv2/core.hpp>
@@ -8,6 +9,17 @@
 #include "vision/pixel.h"
 
 namespace nadir::vision {
+
+inline constexpr std::ptrdiff_t kCacheLineBytes = 64;
+
+/// Asks memory for bytes that are needed soon.
+inline void fetch(const void* from, std::ptrdiff_t bytes) {
+  const auto* const first = static_cast<const std::uint8_t*>(from);
+  for (std::ptrdiff_t byte = 0; byte < bytes; byte += kCacheLineBytes) {
+    __builtin_prefetch(first + byte);
+  }
+  __builtin_prefetch(first + bytes - 1);
+}
 
 /// The pixels of a square of an image that memory is asked for before they are needed, row by row:
 /// the processor does not foresee which rows are to come, and stands still when it is asked for
@@ -42,14 +54,38 @@ class SquareFetch {
   void all_rows() {
     while (rows_left_ > 0) next_row();
   }
+  bool is_done() const { return rows_left_ <= 0; }
 
  private:
-  static constexpr std::ptrdiff_t kCacheLineBytes = 64;
-
   const std::uint8_t* row_ = nullptr;
   std::ptrdiff_t row_bytes_ = 0;
   std::ptrdiff_t step_bytes_ = 0;
   int rows_left_ = 0;
+};
+
+/// Several squares, one after the other.
+class PixelFetch {
+ public:
+  static constexpr std::size_t kMostSquares = 8;
+
+  PixelFetch() = default;  ///< nothing to fetch
+  /// A ninth square is not fetched ahead.
+  void add(const SquareFetch& square) {
+    if (count_ < kMostSquares && !square.is_done()) squares_[count_++] = square;
+  }
+  void next_row() {
+    if (now_ == count_) return;
+    squares_[now_].next_row();
+    if (squares_[now_].is_done()) ++now_;
+  }
+  void all_rows() {
+    while (now_ < count_) next_row();
+  }
+
+ private:
+  std::array<SquareFetch, kMostSquares> squares_;
+  std::size_t count_ = 0;
+  std::size_t now_ = 0;
 };
 
 }  // namespace nadir::vision

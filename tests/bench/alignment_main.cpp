@@ -87,10 +87,10 @@ std::vector<nadir::bench::SearchCase> speed_cases() {
   nadir::vision::Scene hundred = standing("pair_even");
   hundred.camera = league.camera;
   hundred.random_robots.front().count = 100;
-  return {{"12 league", league, kSource},
-          {"12 league x2", nadir::bench::enlarged(league, 2), kSource},
-          {"12 league wide", wide, kSource},
-          {"100 pairs", hundred, kSource}};
+  return {{"12 league", league, kSource, false},
+          {"12 league x2", nadir::bench::enlarged(league, 2), kSource, false},
+          {"12 league wide", wide, kSource, false},
+          {"100 pairs", hundred, kSource, false}};
 }
 
 nlohmann::json run_speed() {
@@ -98,7 +98,7 @@ nlohmann::json run_speed() {
              "/ reading", "robots");
   nlohmann::json cases = nlohmann::json::array();
   for (const nadir::bench::SearchCase& which : speed_cases()) {
-    const nadir::bench::SearchCosts costs = nadir::bench::measure_cold_search(which, 100);
+    const nadir::bench::SearchCosts costs = nadir::bench::measure_cold_search(which, 300);
     fmt::print("{:<14} {:>4}x{:<4} {:>9.0f} {:>9.0f} {:>9.2f} {:>4.1f}/{}\n", costs.name,
                costs.width_px, costs.height_px, costs.reading_us(), costs.nadir.median_us,
                costs.nadir_per_reading(), costs.nadir_robots, costs.robots);

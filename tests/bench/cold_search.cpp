@@ -64,6 +64,7 @@ void time(std::vector<double>& times_us, Work&& work) {
 }
 
 Cost cost(std::vector<double> times_us) {
+  if (times_us.empty()) return {};
   std::sort(times_us.begin(), times_us.end());
   const std::size_t n = times_us.size();
   return {times_us[n / 2], times_us[n / 4], times_us[3 * n / 4]};
@@ -85,18 +86,15 @@ class Contest {
                   renderer.camera().width_px(), renderer.camera().height_px()),
         blobs_(renderer.scene().layouts.front(), pixels_per_metre(renderer)) {}
 
-  /// All variants once, each on a frame that the others meet a quarter of the buffers later.
+  /// nadir and both ways to read once, each on a frame that the others meet a quarter of the
+  /// buffers later.
   void round(int number) {
-    const auto buffer_of = [&](int variant) -> const Buffer& {
-      const std::size_t n = buffers_.size();
-      return buffers_[(static_cast<std::size_t>(number) + n / kVariants * variant) % n];
-    };
-    const Buffer& first = buffer_of(0);
+    const Buffer& first = buffer_of(number, 0);
     std::uint64_t sum = 0;
     time(in_order_us, [&] { sum = byte_sum_in_order(bytes(first)); });
     check_sum(sum, first);
 
-    frame_.image = buffer_of(1).image;
+    frame_.image = buffer_of(number, 1).image;
     frame_.number = static_cast<std::uint64_t>(number);
     frame_.capture_time = capture_time_ + std::chrono::milliseconds(20) * number;
     time(nadir_us, [&] { pipeline_.process(frame_, 0.0, report_); });
@@ -104,12 +102,14 @@ class Contest {
     nadir_rejected +=
         report_.rejected.size() + static_cast<std::size_t>(report_.rejected_not_listed);
 
-    const Buffer& third = buffer_of(2);
+    const Buffer& third = buffer_of(number, 2);
     time(two_streams_us, [&] { sum = byte_sum_two_streams(bytes(third)); });
     check_sum(sum, third);
+  }
 
+  void opencv_round(int number) {
     int grouped = 0;
-    time(opencv_us, [&] { grouped = blobs_.count_robots(buffer_of(3).image); });
+    time(opencv_us, [&] { grouped = blobs_.count_robots(buffer_of(number, 3).image); });
     opencv_robots += static_cast<std::size_t>(grouped);
   }
 
@@ -126,6 +126,10 @@ class Contest {
   std::size_t opencv_robots = 0;
 
  private:
+  const Buffer& buffer_of(int number, int variant) const {
+    const std::size_t n = buffers_.size();
+    return buffers_[(static_cast<std::size_t>(number) + n / kVariants * variant) % n];
+  }
   static std::span<const std::uint8_t> bytes(const Buffer& buffer) {
     return {buffer.image.datastart, buffer.image.dataend};
   }
@@ -162,8 +166,12 @@ SearchCosts measure_cold_search(const SearchCase& search_case, int measurements)
   Contest contest(renderer, std::move(buffers), search_case.source);
   contest.round(0);  // lists and pictures grow to their size
   for (int i = 1; i < kRoundsBefore; ++i) contest.round(i);  // robots are known by then
+  if (search_case.beside_opencv) contest.opencv_round(0);
   contest.forget();
   for (int i = 0; i < measurements; ++i) contest.round(i + kRoundsBefore);
+  for (int i = 0; search_case.beside_opencv && i < measurements; ++i) {
+    contest.opencv_round(i + kRoundsBefore);
+  }
   costs.read_in_order = cost(contest.in_order_us);
   costs.read_two_streams = cost(contest.two_streams_us);
   costs.nadir = cost(contest.nadir_us);

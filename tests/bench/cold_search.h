@@ -10,13 +10,15 @@ namespace nadir::bench {
 
 // What a full-frame search costs that knows nothing of earlier frames, poses included, beside
 // merely reading every byte of the frame and beside a pipeline of OpenCV functions. One thread. All
-// variants run in turn on frames that none of them has touched for longer than the last-level cache
-// remembers: a camera's next frame is in memory, never in the cache.
+// variants work on frames that none of them has touched for longer than the last-level cache
+// remembers: a camera's next frame is in memory, never in the cache. nadir and reading take turns;
+// OpenCV comes after them, since its pictures come and go, and with them the page tables of all.
 
 struct SearchCase {
   std::string name;
   vision::Scene scene;  ///< robots at new places in every frame; or standing, to be followed
   tracker::PoseSource source = tracker::PoseSource::kDetector;
+  bool beside_opencv = true;  ///< or `opencv` stays empty
 };
 
 /// CPU time of one variant, microseconds.

@@ -76,7 +76,7 @@ struct Rows {
   int begin, end, step;
   int u0, v0;               // from where pixels count
   float level, by_u, by_v;  // light there over that of the disc's middle, and its change
-  vision::SquareFetch* meanwhile;
+  vision::PixelFetch* meanwhile;
 };
 
 Rows rows_of(const Ring& ring, const PatchWindow& window, const cv::Mat& image, bool mosaic) {

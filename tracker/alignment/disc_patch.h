@@ -39,7 +39,7 @@ struct PatchWindow {
   /// Relative change of the light per pixel, to be taken out of the values.
   Eigen::Vector2d light_slope_per_px = Eigen::Vector2d::Zero();
   /// Of another place, fetched meanwhile; or null.
-  vision::SquareFetch* meanwhile = nullptr;
+  vision::PixelFetch* meanwhile = nullptr;
 };
 
 /// Fills the patch with pixels of `image` (CV_8UC3, or with a mosaic CV_8UC1 too) whose middle lies

@@ -33,10 +33,23 @@ Normal normal_of(const ChannelSums& sums, double contrast) {
 
 }  // namespace
 
+Eigen::Vector2d CentreEvidence::own_step_m() const { return information.inverse() * gradient; }
+
+double CentreEvidence::gain(const Eigen::Vector2d& step_m) const {
+  return 2.0 * gradient.dot(step_m) - step_m.dot(information * step_m);
+}
+
 double CentreEvidence::chi_square_per_dof(const Eigen::Vector2d& step_m) const {
   const double dof = std::max(1.0, pixels - 8.0);
-  const double left = squares - 2.0 * gradient.dot(step_m) + step_m.dot(information * step_m);
-  return std::max(0.0, left) / dof;
+  return std::max(0.0, squares - gain(step_m)) / dof;
+}
+
+double CentreEvidence::pull_ratio_after(const Eigen::Vector2d& step_m) const {
+  return std::max(0.0, pull_ratio - gain(step_m) / (kPullShare * std::max(1.0, pixels)));
+}
+
+double CentreEvidence::misfit(const Eigen::Vector2d& step_m) const {
+  return std::max(chi_square_per_dof(step_m), pull_ratio_after(step_m));
 }
 
 void DiscState::start(const DiscEdge& edge, const Eigen::Vector2d& centre_m) {

@@ -18,8 +18,20 @@ struct CentreEvidence {
   /// Scatter of the pull at the centre over what noise would make: the misfit where it matters.
   double pull_ratio = 1.0;
 
+  /// To where the disc itself fits best.
+  Eigen::Vector2d own_step_m() const;
   /// Chi-square per degree of freedom after a step.
   double chi_square_per_dof(const Eigen::Vector2d& step_m) const;
+  /// The pull's ratio after a step, to a tenth or so of what the step changes.
+  double pull_ratio_after(const Eigen::Vector2d& step_m) const;
+  /// The larger one of both: how badly the disc's template fits after a step.
+  double misfit(const Eigen::Vector2d& step_m) const;
+
+  static constexpr double kPullShare = 0.4;  ///< of the pixels pull at the centre
+
+ private:
+  /// What a step takes off the squares.
+  double gain(const Eigen::Vector2d& step_m) const;
 };
 
 /// A disc at work: its pixels, their shares, its levels. Evaluate, step, evaluate again.

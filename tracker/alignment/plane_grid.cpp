@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vision/prefetch.h"
+
 namespace nadir::tracker {
 namespace {
 
@@ -59,11 +61,19 @@ PlaneGrid::PlaneGrid(const calibration::PlaneMap& map, int width_px, int height_
   }
 }
 
+std::array<int, 2> PlaneGrid::nearest(int u, int v) const {
+  return {std::clamp((u + kSpacing_px / 2) / kSpacing_px, 0, columns_ - 1),
+          std::clamp((v + kSpacing_px / 2) / kSpacing_px, 0, rows_ - 1)};
+}
+
 LocalPlane PlaneGrid::about(int u, int v) const {
-  const int column = std::clamp((u + kSpacing_px / 2) / kSpacing_px, 0, columns_ - 1);
-  const int row = std::clamp((v + kSpacing_px / 2) / kSpacing_px, 0, rows_ - 1);
-  return nodes_[static_cast<std::size_t>(row) * columns_ + column].moved(u - column * kSpacing_px,
-                                                                         v - row * kSpacing_px);
+  const std::array<int, 2> at = nearest(u, v);
+  return node(at).moved(u - at[0] * kSpacing_px, v - at[1] * kSpacing_px);
+}
+
+void PlaneGrid::fetch(const vision::PixelPoint& pixel) const {
+  const LocalPlane& place = node(nearest(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())));
+  vision::fetch(&place, sizeof(place));
 }
 
 Eigen::Vector2d PlaneGrid::plane_from_pixel(const vision::PixelPoint& pixel) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,9 @@ class PlaneGrid {
 
   /// About the pixel (u, v); places outside of the image continue the nearest node.
   LocalPlane about(int u, int v) const;
+  /// Asks memory for what `about` will need there: the grid of a large picture is larger than
+  /// caches.
+  void fetch(const vision::PixelPoint& pixel) const;
   Eigen::Vector2d plane_from_pixel(const vision::PixelPoint& pixel) const;
   /// Square root of the area of a pixel.
   double metres_per_pixel(const vision::PixelPoint& pixel) const;
@@ -45,6 +49,13 @@ class PlaneGrid {
 
  private:
   static constexpr int kSpacing_px = 8;
+
+  /// Index of the node nearest to a pixel, as column and row.
+  std::array<int, 2> nearest(int u, int v) const;
+  const LocalPlane& node(const std::array<int, 2>& at) const {
+    return nodes_[static_cast<std::size_t>(at[1]) * static_cast<std::size_t>(columns_) +
+                  static_cast<std::size_t>(at[0])];
+  }
 
   int width_px_;
   int height_px_;

@@ -25,7 +25,7 @@ PoseAligner& PoseAligner::operator=(PoseAligner&&) noexcept = default;
 
 const DiscTemplate& PoseAligner::robot() const { return fit_->robot(); }
 
-void PoseAligner::fetch_meanwhile(const vision::SquareFetch& next) { meanwhile_ = next; }
+void PoseAligner::fetch_meanwhile(const vision::PixelFetch& next) { meanwhile_ = next; }
 
 bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& sensor,
                         const PoseGuess& guess, const ExpectedLook* look,

@@ -40,7 +40,7 @@ class PoseAligner {
 
   /// Pixels that the next call of `align` asks memory for, between those that it gathers: the robot
   /// that is next.
-  void fetch_meanwhile(const vision::SquareFetch& next);
+  void fetch_meanwhile(const vision::PixelFetch& next);
 
   /// False, and nothing of use in `result`, where no pose can be had: outside of the image, fewer
   /// than two discs that look as expected, or no convergence. `look` null: nothing is known of the
@@ -57,7 +57,7 @@ class PoseAligner {
  private:
   AlignmentSettings settings_;
   std::unique_ptr<RobotFit> fit_;
-  vision::SquareFetch meanwhile_;
+  vision::PixelFetch meanwhile_;
   std::size_t taught_disc_ = 0;
 };
 

@@ -12,7 +12,6 @@ constexpr double kNear_px = 0.5;
 constexpr double kNoLimit = 1e9;
 constexpr double kSuspicious = 1.25;        // chi-square per degree of freedom
 constexpr double kSuspicious_sigmas = 3.0;  // beyond what chance makes of it
-constexpr double kPullShare = 0.4;          // of the pixels pull at the centre
 // A slope of the light of 1 per pixel shifts a disc by so many radii and blurs; a shadow's edge is
 // no even slope, so twice what a slope would do.
 constexpr double kShadingError = 2.4;
@@ -101,9 +100,13 @@ void RobotFit::evaluate(const PixelNoise& noise) {
 
 bool RobotFit::is_suspicious(std::size_t i) const {
   const CentreEvidence& e = evidence_[i];
+  // Where the disc itself fits best: of a place that is a little off, the rigid pattern's misfit
+  // tells.
+  const Eigen::Vector2d own_m = e.own_step_m();
   const double chance = kSuspicious_sigmas * std::sqrt(2.0 / e.pixels);
-  return e.chi_square_per_dof(Eigen::Vector2d::Zero()) > std::max(kSuspicious, 1.0 + chance) ||
-         e.pull_ratio > std::max(kSuspicious, 1.0 + chance / std::sqrt(kPullShare));
+  const double pull_chance = chance / std::sqrt(CentreEvidence::kPullShare);
+  return e.chi_square_per_dof(own_m) > std::max(kSuspicious, 1.0 + chance) ||
+         e.pull_ratio_after(own_m) > std::max(kSuspicious, 1.0 + pull_chance);
 }
 
 void RobotFit::look_at_structure(const FramePixels& frame, const PixelNoise& noise) {
@@ -115,13 +118,12 @@ void RobotFit::look_at_structure(const FramePixels& frame, const PixelNoise& noi
       if (!is_suspicious(i) || !gather_whole(frame, i)) continue;
       evidence_[i] = discs_[i].evaluate(view_.edge(i), centre_m(i), noise, limits());
     }
-    const double chi_square =
-        std::max(evidence_[i].chi_square_per_dof(Eigen::Vector2d::Zero()), evidence_[i].pull_ratio);
+    const double misfit = evidence_[i].misfit(evidence_[i].own_step_m());
     structure_[i] =
         std::max(1.0, discs_[i].structure(evidence_[i], noise, limits()) - kStructureOfNoise);
     const DiscState::Slope slope = discs_[i].light_slope(noise);
     const double certain =
-        std::max(0.0, slope.per_px.norm() - 3.0 * std::sqrt(chi_square) * slope.deviation_per_px);
+        std::max(0.0, slope.per_px.norm() - 3.0 * std::sqrt(misfit) * slope.deviation_per_px);
     shading_m2_[i] = std::pow(kShadingError * robot_.radius_m[i] * view_.blur_px() * certain, 2);
   }
 }
@@ -151,8 +153,7 @@ bool RobotFit::step() {
     const Eigen::Matrix<double, 2, 3> a = place_.lever(robot_.place_m[i]);
     const Eigen::Matrix2d weight = covariance_m2(i, 0.0).inverse();
     information += a.transpose() * weight * a;
-    gradient +=
-        a.transpose() * (weight * (evidence_[i].information.inverse() * evidence_[i].gradient));
+    gradient += a.transpose() * (weight * evidence_[i].own_step_m());
   }
   // Compared in metres: the heading by way of the outermost rim.
   const Eigen::Vector3d scale(1.0, 1.0, 1.0 / robot_.reach_m);
@@ -166,8 +167,7 @@ bool RobotFit::step() {
     const Eigen::Vector2d moved_m = place_.lever(robot_.place_m[i]) * last_step_;
     discs_[i].follow(moved_m);
     longest_m = std::max(longest_m, moved_m.norm());
-    inflation_[i] = std::max(
-        {structure_[i], evidence_[i].chi_square_per_dof(moved_m), evidence_[i].pull_ratio});
+    inflation_[i] = std::max(structure_[i], evidence_[i].misfit(moved_m));
   }
   place_ = place_.moved(last_step_);
   last_step_px_ = longest_m / view_.m_per_px();
@@ -217,8 +217,7 @@ void RobotFit::finish(AlignedPose& result) const {
     const Eigen::Matrix<double, 2, 3> a = place_.lever(robot_.place_m[i]);
     const Eigen::Matrix2d weight = covariance_m2(i, floor_m2).inverse();
     information += a.transpose() * weight * a;
-    const Eigen::Vector2d off_m =
-        evidence_[i].information.inverse() * evidence_[i].gradient - a * last_step_;
+    const Eigen::Vector2d off_m = evidence_[i].own_step_m() - a * last_step_;
     misfit += off_m.dot(weight * off_m);
     for (std::size_t c = 0; c < 3; ++c) {
       disc.level[static_cast<Eigen::Index>(c)] = discs_[i].levels[c].level;

@@ -17,7 +17,7 @@ struct FramePixels {
   const cv::Mat& image;
   Mosaic mosaic;
   const LightShape& light;
-  vision::SquareFetch* meanwhile = nullptr;  ///< pixels of another robot, fetched between, or null
+  vision::PixelFetch* meanwhile = nullptr;  ///< pixels of another robot, fetched between, or null
 };
 
 /// Decides which pixels tell of a robot's discs: those near a disc's edge, but not near the rim of

@@ -81,7 +81,7 @@ struct TagAligner::State {
   const PlaneGrid* grid;
   TagAlignmentSettings settings;
   std::map<int, TagTemplate> prints;
-  vision::SquareFetch meanwhile;
+  vision::PixelFetch meanwhile;
   TagPatch patch;
   const TagTemplate* print = nullptr;
   TagWeights weights;
@@ -245,7 +245,7 @@ TagAligner::~TagAligner() = default;
 TagAligner::TagAligner(TagAligner&&) noexcept = default;
 TagAligner& TagAligner::operator=(TagAligner&&) noexcept = default;
 
-void TagAligner::fetch_meanwhile(const vision::SquareFetch& next) { state_->meanwhile = next; }
+void TagAligner::fetch_meanwhile(const vision::PixelFetch& next) { state_->meanwhile = next; }
 
 bool TagAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& sensor, int tag_id,
                        const fusion::PlanarPose& guess, const vision::PixelPoint& middle_px,

@@ -53,7 +53,7 @@ class TagAligner {
 
   /// Pixels that the next call of `align` asks memory for, between those that it gathers: the tag
   /// that is next.
-  void fetch_meanwhile(const vision::SquareFetch& next);
+  void fetch_meanwhile(const vision::PixelFetch& next);
 
   /// `guess`: of the tag, good to half a cell and about 5 degrees; `middle_px`: where the image
   /// shows it, to a few pixels. False where no pose can be had: partly out of the image, no

@@ -81,7 +81,7 @@ int pad(int at, TagPatch& patch) {
 // Every `step`-th of the rows that the square touches, and what is fetched between them.
 struct RowRange {
   int begin, end, step;
-  vision::SquareFetch& meanwhile;
+  vision::PixelFetch& meanwhile;
 };
 
 // Pixels of a row, the last not included; empty: end <= begin.
@@ -185,7 +185,7 @@ int gather_channel(const cv::Mat& image, Mosaic mosaic, int channel, const Plane
 
 bool gather_tag(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid,
                 const fusion::PlanarPose& pose, const vision::PixelPoint& middle_px, double reach_m,
-                vision::SquareFetch& meanwhile, TagPatch& patch) {
+                vision::PixelFetch& meanwhile, TagPatch& patch) {
   const int middle_v = static_cast<int>(std::lround(middle_px.y()));
   const LocalPlane plane = grid.about(static_cast<int>(std::lround(middle_px.x())), middle_v);
   const SquareRows rows(plane, pose, middle_px, reach_m);

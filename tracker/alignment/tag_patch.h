@@ -34,6 +34,6 @@ struct TagPatch {
 /// rows. False if fewer than half of the pixels are in the image.
 bool gather_tag(const cv::Mat& image, Mosaic mosaic, const PlaneGrid& grid,
                 const fusion::PlanarPose& pose, const vision::PixelPoint& middle_px, double reach_m,
-                vision::SquareFetch& meanwhile, TagPatch& patch);
+                vision::PixelFetch& meanwhile, TagPatch& patch);
 
 }  // namespace nadir::tracker
