@@ -28,13 +28,14 @@ LoopbackDds::LoopbackDds(double loss)
     // Spreads the ports: each domain has its own. 101 is the last one below the ephemeral ports.
     : domain_(static_cast<std::uint32_t>(getpid()) % 102),
       // No multicast: the tag and the one peer are the whole network. The default of 9 participants
-      // is too few, because those of killed processes linger.
+      // is too few, because those of killed processes linger. Each says every second that it is
+      // there: where packets are lost, eight seconds (the default) may be all of a test.
       uri_(
           "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface "
           "address=\"127.0.0.1\"/>"
           "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery><Tag>" +
           unique_tag() +
-          "</Tag><ParticipantIndex>auto</ParticipantIndex>"
+          "</Tag><SPDPInterval>1s</SPDPInterval><ParticipantIndex>auto</ParticipantIndex>"
           "<MaxAutoParticipantIndex>99</MaxAutoParticipantIndex>"
           "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>" +
           lossy(loss) + "</Domain></CycloneDDS>") {
