@@ -51,6 +51,9 @@ void print(const DriveResult& result) {
       100.0 * result.ticks_missed_share(), 100.0 * result.tracker.cpu_share,
       result.tracker.memory_mb, 100.0 * result.client.cpu_share, result.client.memory_mb);
   fmt::print("{}", nadir::control_client::error_table(result.drives));
+  const nadir::control_client::DriveError fused = result.fused();
+  fmt::print("fused, all robots: {:.2f} mm, {:.2f} deg\n", 1e3 * fused.position_rms_m,
+             kDegrees * fused.heading_rms_rad);
   for (const auto& sample : result.memory) {
     fmt::print("  {:6.0f} s  tracker {:.2f} MB  client {:.2f} MB\n", sample.time_s,
                sample.tracker_mb, sample.client_mb);
@@ -74,6 +77,8 @@ nlohmann::json json(const DriveResult& result) {
           {"tracker_memory_mb", result.tracker.memory_mb},
           {"client_cpu_share", result.client.cpu_share},
           {"client_memory_mb", result.client.memory_mb},
+          {"fused_position_rms_m", result.fused().position_rms_m},
+          {"fused_heading_rms_rad", result.fused().heading_rms_rad},
           {"memory", memory},
           {"drives", nadir::control_client::error_json(result.drives)}};
 }
@@ -81,7 +86,7 @@ nlohmann::json json(const DriveResult& result) {
 void run(const Options& options) {
   fmt::print(
       "Robots drive by what the tracker sees of them: 50 Hz, 60 to 100 ms late, a tenth of "
-      "the frames lost\ngoals: fused {} mm and {} deg, {} % of ticks missed\n\n",
+      "the frames lost\ngoals, of all robots: fused {} mm and {} deg, {} % of ticks missed\n\n",
       kGoal_mm, kGoal_deg, 100.0 * kGoalMissed);
   nlohmann::json results = nlohmann::json::array();
   for (const DriveScenario& scenario : scenarios(options)) {

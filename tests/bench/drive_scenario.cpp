@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -172,6 +174,19 @@ double DriveResult::ticks_missed_share() const {
     missed += drive.ticks_missed;
   }
   return ticks > 0.0 ? missed / ticks : 0.0;
+}
+
+control_client::DriveError DriveResult::fused() const {
+  control_client::DriveError all;
+  for (const control_client::DriveErrors& drive : drives) {
+    all.position_rms_m = std::hypot(all.position_rms_m, drive.fused.position_rms_m);
+    all.heading_rms_rad = std::hypot(all.heading_rms_rad, drive.fused.heading_rms_rad);
+    all.position_max_m = std::max(all.position_max_m, drive.fused.position_max_m);
+  }
+  const double root = std::sqrt(std::max<double>(1.0, static_cast<double>(drives.size())));
+  all.position_rms_m /= root;
+  all.heading_rms_rad /= root;
+  return all;
 }
 
 DriveResult run_drive(const DriveScenario& scenario) { return Run(scenario).finish(); }

@@ -39,6 +39,8 @@ struct DriveResult {
   std::vector<MemorySample> memory;
 
   double ticks_missed_share() const;
+  /// Root mean square over all robots, estimate against truth.
+  control_client::DriveError fused() const;
 };
 
 /// Runs it in real time. Throws std::runtime_error if a process fails.
