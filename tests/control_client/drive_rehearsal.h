@@ -33,8 +33,9 @@ struct RehearsalRow {
   std::optional<fusion::Estimate> estimate;
 };
 
-/// DriveCore with simulated robot (omni3, its inner loop as on board), tracker and network in simulated time: no thread, no clock, no
-/// DDS; the same on every machine. Members may be changed between calls of run.
+/// DriveCore with simulated robot (omni3, its inner loop as on board), tracker and network in
+/// simulated time: no thread, no clock, no DDS; the same on every machine. Members may be changed
+/// between calls of run.
 class Rehearsal {
  public:
   Rehearsal(const DriveSettings& settings, TrajectoryPtr trajectory, std::uint64_t seed,

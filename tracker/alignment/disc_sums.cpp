@@ -9,7 +9,6 @@ namespace {
 using lanes::Floats;
 using lanes::kLanes;
 using lanes::load;
-using lanes::store;
 using lanes::sum_of;
 using namespace channel_fit;
 
