@@ -86,7 +86,7 @@ nlohmann::json json(const DriveResult& result) {
 void run(const Options& options) {
   fmt::print(
       "Robots drive by what the tracker sees of them: 50 Hz, 60 to 100 ms late, a tenth of "
-      "the frames lost\ngoals, of all robots: fused {} mm and {} deg, {} % of ticks missed\n\n",
+      "the frames lost\ngoals, of each robot: fused {} mm and {} deg, {} % of ticks missed\n\n",
       kGoal_mm, kGoal_deg, 100.0 * kGoalMissed);
   nlohmann::json results = nlohmann::json::array();
   for (const DriveScenario& scenario : scenarios(options)) {
