@@ -17,7 +17,7 @@ struct LoopParameters {
   }
 };
 
-/// The defaults are S2 Table 5.1 and S0's sampling.
+/// The defaults are S2 Table 5.1 and S0's sampling; the tolerated slip is our own.
 struct ControlParameters {
   LoopParameters outer;
   LoopParameters inner{0.7, 40.0, 0.9, 20.0};

@@ -8,8 +8,7 @@ ControlParameters tolerating_slip(const RobotModel& model, ControlParameters con
   const double slip_s = control.tolerated_slip_s;
   if (slip_s <= 0.0) return control;
   constexpr double kShare = 0.5;  // of what is stable
-  const Eigen::Matrix3d damping_per_s = -model.linearization_per_s(Eigen::Vector3d::Zero());
-  const double least_damping_per_s = damping_per_s.diagonal().minCoeff();
+  const double least_damping_per_s = model.damping_per_s().diagonal().minCoeff();
   LoopParameters& inner = control.inner;
   const double by_proportional_radps =
       (least_damping_per_s + kShare / slip_s) / (2.0 * inner.damping);

@@ -8,7 +8,8 @@ namespace nadir::control_client {
 /// The controller with an inner loop as stiff as its parameters say, but no stiffer than wheels
 /// allow that slip while it accelerates. A wheel that measures v + l v' in place of v closes the
 /// inner loop about (1 + l s): for l < 0 its gain grows with frequency in the wrong sense. With d
-/// the smallest damping of the robot's body rates (D of S2 eq 12), about a robot at rest,
+/// the smallest element of the diagonal of the robot's damping D (S2 eq 4), about a robot at rest
+/// and with the same l at all wheels,
 ///
 ///     (1 + (a22 - d) l) s^2 + (a22 + a21 l) s + a21 = 0
 ///

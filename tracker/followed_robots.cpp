@@ -142,14 +142,14 @@ vision::PixelFetch FollowedRobots::pixels_of(const cv::Mat& image,
   const LocalPlane about = grids_[robot.layout]->about(static_cast<int>(std::lround(last_px.x())),
                                                        static_cast<int>(std::lround(last_px.y())));
   const Eigen::Matrix2d px_per_m = about.slope.inverse();
-  const double scale = std::sqrt(std::abs(px_per_m.determinant()));
+  const double scale_px_per_m = std::sqrt(std::abs(px_per_m.determinant()));
   const RobotPlace place(predict(robot, last_frame_).pose_world_robot);
   const DiscTemplate& discs = aligners_[robot.layout].robot();
   vision::PixelFetch fetch;
   for (std::size_t i = 0; i < static_cast<std::size_t>(discs.disc_count); ++i) {
     const Eigen::Vector2d away_m = place.point(discs.place_m[i]) - robot.pose.position_m();
     const vision::PixelPoint centre_px = last_px + px_per_m * away_m;
-    fetch.add({image, centre_px, scale * discs.radius_m[i] + kEdge_px});
+    fetch.add({image, centre_px, scale_px_per_m * discs.radius_m[i] + kEdge_px});
     grids_[robot.layout]->fetch(centre_px);
   }
   return fetch;
@@ -219,7 +219,7 @@ bool FollowedRobots::refine(const vision::Frame& frame, std::size_t layout,
   return true;
 }
 
-// Every robot teaches while little is known of the camera, later every fourth.
+// Every robot teaches while little is known of the camera, later every fourth, by turns.
 void FollowedRobots::teach(const cv::Mat& image, std::size_t layout) {
   if (sensor_.blur_deviation_px() < kKnownBlur_px && ++aligned_robots_ % kRobotsPerLesson != 0) {
     return;

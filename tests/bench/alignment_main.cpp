@@ -79,7 +79,6 @@ std::vector<nadir::bench::SearchCase> speed_cases() {
     }
     return scene;
   };
-  constexpr auto kSource = nadir::tracker::PoseSource::kAlignment;
   const nadir::vision::Scene league = standing("league_even");
   // The same robots, as large in pixels, under a camera that shows four times the floor.
   nadir::vision::Scene wide = nadir::bench::enlarged(league, 2);
@@ -87,10 +86,15 @@ std::vector<nadir::bench::SearchCase> speed_cases() {
   nadir::vision::Scene hundred = standing("pair_even");
   hundred.camera = league.camera;
   hundred.random_robots.front().count = 100;
-  return {{"12 league", league, kSource, false},
-          {"12 league x2", nadir::bench::enlarged(league, 2), kSource, false},
-          {"12 league wide", wide, kSource, false},
-          {"100 pairs", hundred, kSource, false}};
+  const auto followed = [](const char* name, const nadir::vision::Scene& scene) {
+    return nadir::bench::SearchCase{.name = name,
+                                    .scene = scene,
+                                    .source = nadir::tracker::PoseSource::kAlignment,
+                                    .beside_opencv = false};
+  };
+  return {followed("12 league", league),
+          followed("12 league x2", nadir::bench::enlarged(league, 2)),
+          followed("12 league wide", wide), followed("100 pairs", hundred)};
 }
 
 nlohmann::json run_speed() {

@@ -63,8 +63,8 @@ void print(const std::vector<SearchCosts>& all) {
   fmt::print(
       "reading: the faster of the two; goal: nadir / reading at most {} at 1280x1024, {} at "
       "2560x2048\n"
-      "Each variant's next frame is none that the cache still holds ({} measurements each, in "
-      "turn).\n"
+      "Each variant's next frame is none that the cache still holds ({} measurements each: "
+      "nadir and reading by turns, then OpenCV).\n"
       "OpenCV's thresholds were made for the even light.\n\n",
       kGoalPerReading, kGoalPerReadingLarge, all.front().measurements);
 }
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
   app.footer("Example: cold_search --scene league_even --json search.json");
   app.add_option("--json", options.json_file, "write the figures to this file too");
   app.add_option("--scene", options.only, "only this one");
-  app.add_option("--measurements", options.measurements, "of each variant, in turn")
+  app.add_option("--measurements", options.measurements, "of each variant")
       ->check(CLI::Range(1, 1000000));
   return nadir::bench::bench_main(argc, argv, app, [&options] { run(options); });
 }

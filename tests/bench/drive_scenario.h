@@ -39,7 +39,7 @@ struct DriveResult {
   std::vector<MemorySample> memory;
 
   double ticks_missed_share() const;
-  /// Root mean square over all robots, estimate against truth.
+  /// Root mean square and largest over all robots, estimate against truth.
   control_client::DriveError fused() const;
 };
 

@@ -137,6 +137,16 @@ TEST(RobotKinds, AreWhatTheFileSaysAndMustAgree) {
   EXPECT_TRUE(load_driven_robot("", {}).takes_volts);
 }
 
+TEST(RobotKinds, OnBoardTheInnerLoopToleratesSlip) {
+  EXPECT_EQ(load_robot(NADIR_DATA_DIR "/robots/omni3.yaml").control.inner.natural_frequency_radps,
+            20.0);
+  for (const std::filesystem::path file : {"", NADIR_DATA_DIR "/robots/omni3.yaml"}) {
+    EXPECT_NEAR(load_driven_robot("", file).config.control.inner.natural_frequency_radps, 7.203,
+                1e-3)
+        << file;
+  }
+}
+
 TEST(RobotKinds, TheFileOfTheHouseIsTheDefault) {
   const DifferentialParameters file = load_differential_parameters(
       std::filesystem::path(NADIR_DATA_DIR) / "robots/differential.yaml");

@@ -26,6 +26,7 @@ TEST(RobotFile, Omni3IsTheDefaultInCode) {
   EXPECT_EQ(file.control.tick_s, control.tick_s);
   EXPECT_EQ(file.control.inner.natural_frequency_radps, control.inner.natural_frequency_radps);
   EXPECT_EQ(file.control.outer.filter_bandwidth_radps, control.outer.filter_bandwidth_radps);
+  EXPECT_EQ(file.control.tolerated_slip_s, control.tolerated_slip_s);
 }
 
 TEST(RobotFile, TableOfThePaperIsConsistent) {

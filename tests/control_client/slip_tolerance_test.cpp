@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "control_client/inner_loop.h"
@@ -56,6 +57,11 @@ TEST(SlipTolerance, HalfOfTheGainThatIsStable) {
   EXPECT_NEAR(tolerating(0.08).inner.natural_frequency_radps, 7.203, 1e-3);
   EXPECT_EQ(tolerating(0.08).inner.damping, 0.9);
   EXPECT_EQ(tolerating(0.08).outer.natural_frequency_radps, 4.0);
+}
+
+TEST(SlipTolerance, MuchSlipIsLimitedByTheIntegralGain) {
+  // 0.5 2 0.9 / 0.3 s; the proportional gain would allow 4.66 rad/s.
+  EXPECT_NEAR(tolerating(0.3).inner.natural_frequency_radps, 3.0, 1e-12);
 }
 
 TEST(SlipTolerance, NeverStifferThanTheRobotsParameters) {

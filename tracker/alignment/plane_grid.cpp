@@ -39,7 +39,7 @@ PlaneGrid::PlaneGrid(const calibration::PlaneMap& map, int width_px, int height_
       height_px_(height_px),
       columns_((width_px - 1) / kSpacing_px + 2),
       rows_((height_px - 1) / kSpacing_px + 2) {
-  nodes_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+  nodes_.reserve(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   constexpr double kHalf = 0.5 * kSpacing_px;
   const auto jacobian = [&map](double u, double v) -> Eigen::Matrix2d {
     return map.jacobian_m_per_px({u, v});
@@ -48,7 +48,7 @@ PlaneGrid::PlaneGrid(const calibration::PlaneMap& map, int width_px, int height_
     for (int column = 0; column < columns_; ++column) {
       const double u = column * kSpacing_px;
       const double v = row * kSpacing_px;
-      LocalPlane& node = nodes_[static_cast<std::size_t>(row) * columns_ + column];
+      LocalPlane node;
       node.origin_m = map.plane_from_pixel({u, v});
       node.slope = jacobian(u, v);
       // Second derivatives by central differences of the first ones.
@@ -57,6 +57,7 @@ PlaneGrid::PlaneGrid(const calibration::PlaneMap& map, int width_px, int height_
       node.bend.col(0) = 0.5 * by_u.col(0);
       node.bend.col(1) = 0.5 * (by_u.col(1) + by_v.col(0));
       node.bend.col(2) = 0.5 * by_v.col(1);
+      nodes_.push_back(node);
     }
   }
 }

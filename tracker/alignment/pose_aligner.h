@@ -25,7 +25,8 @@ class RobotFit;
 /// centre, and the rigid pattern of the layout joins them, as rigid_fit does with measured centres.
 /// Pixels are weighted with their noise, Huber's weights limit what does not belong there, and a
 /// disc whose residuals are larger than noise (a shadow's edge) counts accordingly less. Pixels
-/// further from an edge than two blurs have no part in it: they say nothing of a disc's place.
+/// further from an edge than AlignmentSettings::margin_sigmas blurs have no part in it: they say
+/// nothing of a disc's place.
 ///
 /// Another kind of template (a tag's cells) is another function for shares and their derivatives.
 /// Allocates nothing after construction. Not thread-safe: one per thread.
