@@ -88,6 +88,8 @@ TEST(FarCamera, MarkersOfEightToTwentyPixelsAreFound) {
   record(result);
   EXPECT_GE(result.found_share(), 0.99);
   EXPECT_EQ(result.false_robots, 0U);
+  EXPECT_LE(result.centre_rms_px().maxCoeff(), 0.01);
+  EXPECT_LE(result.heading_rms_deg(), 0.13);
   EXPECT_GE(result.mean_nees(), 2.0);
   EXPECT_LE(result.mean_nees(), 4.5);
 }

@@ -178,18 +178,18 @@ TEST_F(RealPhotograph, NoiseMovesAlignedRobotsLessThanTheirCovarianceSays) {
       robots[robot.id].variance += robot.covariance.diagonal();
     }
   }
-  int steadily_aligned = 0;
+  int mostly_aligned = 0;
   for (const auto& [id, poses] : robots) {
     const auto count = static_cast<double>(poses.seen.size());
-    if (count < 0.9 * kNoisy) continue;
-    ++steadily_aligned;
+    if (count < 0.7 * kNoisy) continue;
+    ++mostly_aligned;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero(), scatter = mean;
     for (const Eigen::Vector3d& pose : poses.seen) mean += pose / count;
     for (const Eigen::Vector3d& pose : poses.seen) scatter += (pose - mean).cwiseAbs2() / count;
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_LT(scatter[axis], poses.variance[axis] / count) << "robot " << id << ", axis " << axis;
   }
-  EXPECT_GE(steadily_aligned, 4);
+  EXPECT_EQ(mostly_aligned, 6);
 }
 
 }  // namespace

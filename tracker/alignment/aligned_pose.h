@@ -56,7 +56,7 @@ struct AlignmentSettings {
   double floor_px = calibration::kAlignmentFloor_px;
   double rim_sigmas = 2.2;  ///< pixels nearer to the plate's rim than this many blurs are masked
   /// Pixels further from a disc's edge than this many blurs say nothing of where it is.
-  double margin_sigmas = 2.2;
+  double margin_sigmas = 2.0;
   double least_cosine = 0.97;  ///< between the expected and the seen contrast of a disc
   /// Of a disc's contrast over the expected one, to the median disc.
   double least_amplitude = 0.45;
