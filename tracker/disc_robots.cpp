@@ -13,7 +13,6 @@ namespace {
 
 // While nobody is missed, a newcomer is found within so many frames.
 constexpr int kSlices = 5;
-constexpr int kSliceOverlap = 40;  // the picture's height over it
 constexpr const char* kTooFewPixels = "a disc has too few pixels to be measured";
 
 std::vector<vision::MarkerLayout> disc_layouts(const PipelineSetup& setup) {
@@ -83,9 +82,10 @@ void DiscRobots::search_everywhere(const vision::Frame& frame) {
 // Slices reach back over their upper ends: who drives from the next one into the last one is seen.
 void DiscRobots::search_parts(const vision::Frame& frame) {
   slice_ = (slice_ + 1) % kSlices;
-  const int begin_px = height_px_ * slice_ / kSlices - height_px_ / kSliceOverlap;
+  const int begin_px = height_px_ * slice_ / kSlices;
+  const int end_px = height_px_ * (slice_ + 1) / kSlices;
   for (std::size_t i = 0; i < eyes_.size(); ++i) {
-    bands_.assign(1, {begin_px, height_px_ * (slice_ + 1) / kSlices});
+    bands_.assign(1, {begin_px - followed_.farthest_since_last_frame_px(i), end_px});
     followed_.append_regions(i, bands_);
     look(i, frame);
   }

@@ -72,9 +72,9 @@ PoseGuess FollowedRobots::predict(const FollowedRobot& robot, vision::CaptureTim
 
 void FollowedRobots::follow(const vision::Frame& frame) {
   look_for_mosaic(frame.image);
-  const double gap_s = seconds(frame.capture_time - last_frame_);
+  gap_s_ = seconds(frame.capture_time - last_frame_);
   last_frame_ = frame.capture_time;
-  if (gap_s <= 0.0 || gap_s > kLongestPrediction_s) {
+  if (gap_s_ <= 0.0 || gap_s_ > kLongestPrediction_s) {
     robots_.clear();
     full_searches_due_ = kSearchesAfterLoss;
   }
@@ -107,6 +107,10 @@ double FollowedRobots::search_radius_px(const FollowedRobot& robot) const {
   const double stray_m =
       std::min(kMostStray_m, kSameRobot_m + kFastest_mps * seconds(last_frame_ - robot.last_seen));
   return stray_m / grids_[robot.layout]->metres_per_pixel(robot.aligned.centre_px);
+}
+
+int FollowedRobots::farthest_since_last_frame_px(std::size_t layout) const {
+  return static_cast<int>(std::ceil(kFastest_mps * gap_s_ / grids_[layout]->finest_m_per_px()));
 }
 
 // Where the discs of a robot that was lost or is new may be.

@@ -56,6 +56,8 @@ class FollowedRobots {
   /// True where nothing is known of the frame, or a robot was missed in the one before: then all of
   /// it must be searched.
   bool needs_full_search() const { return needs_full_search_; }
+  /// A robot cannot have driven further since the frame before, wherever in the picture it is.
+  int farthest_since_last_frame_px(std::size_t layout) const;
   /// Appends the rows in which the detector is to look for robots of a layout that were lost or are
   /// too new to be followed.
   void append_regions(std::size_t layout, std::vector<vision::RowBand>& bands) const;
@@ -99,6 +101,7 @@ class FollowedRobots {
   unsigned frames_ = 0;
   unsigned aligned_robots_ = 0;
   vision::CaptureTime last_frame_{};
+  double gap_s_ = 0.0;  ///< between the last two frames
   int full_searches_due_ = 1;
   bool needs_full_search_ = true;
   std::vector<FollowedRobot> robots_;

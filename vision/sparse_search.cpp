@@ -88,7 +88,7 @@ SparseSearch::SparseSearch(int width_px, int height_px, Steps steps, double larg
                   static_cast<std::size_t>(v_.count + 2 * v_.margin)),
       scores_(plane_size_ * colours.size(), kNothing),
       best_of_row_(static_cast<std::size_t>(v_.count) * colours.size(), kNothing),
-      is_listed_(static_cast<std::size_t>(v_.count), 0),
+      row_use_(static_cast<std::size_t>(v_.count), RowUse::kSkipped),
       words_(static_cast<std::size_t>(u_.padded_count)),
       blue_(words_.size()),
       green_(words_.size()),
@@ -100,7 +100,7 @@ SparseSearch::SparseSearch(int width_px, int height_px, Steps steps, double larg
   surroundings_ = {
       -u_.margin,        u_.margin,        -up, up, -up_aslant - aside, -up_aslant + aside,
       up_aslant - aside, up_aslant + aside};
-  rows_to_read_.reserve(is_listed_.size());
+  rows_to_read_.reserve(row_use_.size());
   cells_.reserve(static_cast<std::size_t>(u_.count) * static_cast<std::size_t>(v_.count) *
                  colours.size());
   for (const ColourScore& colour : colours) {
@@ -126,7 +126,7 @@ void SparseSearch::scan(const cv::Mat& bgr, std::span<const RowBand> bands) {
   }
   for (int colour = 0; colour < static_cast<int>(colours_.size()); ++colour) {
     for (int row = 0; row < v_.count; ++row) {
-      if (is_listed_[static_cast<std::size_t>(row)] == 0) {
+      if (row_use_[static_cast<std::size_t>(row)] != RowUse::kListed) {
         best_of_row_[row_index(colour, row)] = kNothing;
       }
     }
@@ -135,24 +135,20 @@ void SparseSearch::scan(const cv::Mat& bgr, std::span<const RowBand> bands) {
 
 // Rows of the surroundings are read too, so that a seed can be judged, but are not listed.
 void SparseSearch::choose_rows(std::span<const RowBand> bands) {
-  constexpr char kRead = 1;
-  constexpr char kListed = 2;
-  std::ranges::fill(is_listed_, char{0});
+  std::ranges::fill(row_use_, RowUse::kSkipped);
   for (const RowBand& band : bands) {
     const int begin = std::clamp(static_cast<int>(std::ceil(v_.index(band.begin_px))), 0, v_.count);
     const int end = std::clamp(static_cast<int>(std::ceil(v_.index(band.end_px))), begin, v_.count);
     if (begin == end) continue;
     for (int row = std::max(0, begin - v_.margin); row < std::min(v_.count, end + v_.margin);
          ++row) {
-      char& use = is_listed_[static_cast<std::size_t>(row)];
-      use = std::max(use, row >= begin && row < end ? kListed : kRead);
+      RowUse& use = row_use_[static_cast<std::size_t>(row)];
+      use = std::max(use, row >= begin && row < end ? RowUse::kListed : RowUse::kRead);
     }
   }
   rows_to_read_.clear();
   for (int row = 0; row < v_.count; ++row) {
-    char& use = is_listed_[static_cast<std::size_t>(row)];
-    if (use != 0) rows_to_read_.push_back(row);
-    use = use == kListed ? 1 : 0;
+    if (row_use_[static_cast<std::size_t>(row)] != RowUse::kSkipped) rows_to_read_.push_back(row);
   }
 }
 
@@ -295,6 +291,7 @@ void SparseSearch::mark(const PixelPoint& centre, double radius_px, int colour) 
       std::min(v_.count - 1, static_cast<int>(std::floor(v_.index(centre.y() + radius_px))));
   for (int row = std::max(0, static_cast<int>(std::ceil(v_.index(centre.y() - radius_px))));
        row <= row_end; ++row) {
+    if (row_use_[static_cast<std::size_t>(row)] == RowUse::kSkipped) continue;
     const double dv_px = v_.pixel(row) - centre.y();
     const double half_px = std::sqrt(std::max(0.0, radius_px * radius_px - dv_px * dv_px));
     const int begin = std::max(0, static_cast<int>(std::ceil(u_.index(centre.x() - half_px))));

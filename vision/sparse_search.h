@@ -70,6 +70,8 @@ class SparseSearch {
     int padded_count;  ///< to whole blocks of grid points that are scored at once
     int margin;        ///< cells of padding on each side = distance of the surroundings
   };
+  /// What becomes of a row: its cells may be seeds, or are the surroundings of such cells.
+  enum class RowUse : std::uint8_t { kSkipped, kRead, kListed };
   struct Cell {
     int colour;
     int row;
@@ -114,10 +116,10 @@ class SparseSearch {
   std::vector<FixedPointScore> colours_;
   std::vector<std::int16_t> scores_;       ///< one padded plane per colour
   std::vector<std::int16_t> best_of_row_;  ///< largest score of each row of each plane
-  std::vector<char> is_listed_;            ///< of each row: its cells may be seeds
-  std::vector<int> rows_to_read_;          ///< those, and the rows of their surroundings
-  std::vector<Cell> cells_;                ///< that may lie in a disc, row by row
-  std::vector<std::int32_t> words_;        ///< the present row's grid points
+  std::vector<RowUse> row_use_;
+  std::vector<int> rows_to_read_;
+  std::vector<Cell> cells_;          ///< that may lie in a disc, row by row
+  std::vector<std::int32_t> words_;  ///< the present row's grid points
   std::vector<std::int16_t> blue_;
   std::vector<std::int16_t> green_;
   std::vector<std::int16_t> red_;

@@ -97,11 +97,12 @@ std::vector<nadir::bench::SearchCase> speed_cases() {
           followed("12 league wide", wide), followed("100 pairs", hundred)};
 }
 
-nlohmann::json run_speed() {
+nlohmann::json run_speed(const std::string& only) {
   fmt::print("{:<14} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "followed", "image", "read_us", "nadir_us",
              "/ reading", "robots");
   nlohmann::json cases = nlohmann::json::array();
   for (const nadir::bench::SearchCase& which : speed_cases()) {
+    if (which.name.find(only) == std::string::npos) continue;
     const nadir::bench::SearchCosts costs = nadir::bench::measure_cold_search(which, 300);
     fmt::print("{:<14} {:>4}x{:<4} {:>9.0f} {:>9.0f} {:>9.2f} {:>4.1f}/{}\n", costs.name,
                costs.width_px, costs.height_px, costs.reading_us(), costs.nadir.median_us,
@@ -163,8 +164,8 @@ void run(const Options& options) {
     return;
   }
   if (options.speed) {
-    nadir::bench::write_json_file({{"benchmark", "alignment speed"}, {"cases", run_speed()}},
-                                  options.json_file);
+    nadir::bench::write_json_file(
+        {{"benchmark", "alignment speed"}, {"cases", run_speed(options.only)}}, options.json_file);
     return;
   }
   print_header();

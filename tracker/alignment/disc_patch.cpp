@@ -31,6 +31,9 @@ class Ring {
       : centre_(window.centre_px), metric_(slope.transpose() * slope) {
     determinant_ = metric_.determinant();
     m_per_px_ = std::sqrt(std::sqrt(determinant_));
+    per_uu_ = 1.0 / metric_(0, 0);
+    lean_ = metric_(0, 1) * per_uu_;
+    across2_per_px2_ = determinant_ * per_uu_;
     const double margin_m = window.margin_px * m_per_px_;
     const double outer_m = window.radius_m + margin_m;
     const double inner_m = window.whole ? 0.0 : std::max(0.0, window.radius_m - margin_m);
@@ -44,13 +47,13 @@ class Ring {
   // One or two chords of a row; two with a hole between them.
   int chords(int v, int columns, std::array<Chord, 2>& result) const {
     const double dv = v - centre_.y();
-    const double middle = centre_.x() - metric_(0, 1) / metric_(0, 0) * dv;
-    const double across2 = determinant_ / metric_(0, 0) * dv * dv;
-    const double outer = std::sqrt(std::max(0.0, (outer2_m2_ - across2) / metric_(0, 0)));
+    const double middle = centre_.x() - lean_ * dv;
+    const double across2 = across2_per_px2_ * dv * dv;
+    const double outer = std::sqrt(std::max(0.0, (outer2_m2_ - across2) * per_uu_));
     const Chord all = {std::max(0, static_cast<int>(std::ceil(middle - outer))),
                        std::min(columns, static_cast<int>(std::floor(middle + outer)) + 1)};
     if (across2 < inner2_m2_) {
-      const double inner = std::sqrt((inner2_m2_ - across2) / metric_(0, 0));
+      const double inner = std::sqrt((inner2_m2_ - across2) * per_uu_);
       const Chord hole = {static_cast<int>(std::floor(middle - inner)) + 1,
                           static_cast<int>(std::ceil(middle + inner))};
       if (hole.end - hole.begin >= kLeastHole_px && hole.begin > all.begin && hole.end < all.end) {
@@ -67,6 +70,9 @@ class Ring {
   Eigen::Matrix2d metric_;  // m^2 per px^2
   double determinant_;
   double m_per_px_;
+  double per_uu_;           // of the metric: its first element's inverse
+  double lean_;             // of the middle of the rows, px per row
+  double across2_per_px2_;  // squared distance of the nearest point of a row, m^2 per px^2
   double outer2_m2_;
   double inner2_m2_;
 };

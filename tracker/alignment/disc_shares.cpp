@@ -67,7 +67,7 @@ NADIR_INLINE void locate(const Geometry& g, const Floats& du, const Floats& dv, 
   const Floats metric2 = x * (g.gxx * x + 2.0F * g.gxy * y) + g.gyy * y * y + kTiny * g.gxx;
   Floats per_distance;
   lanes::inverse_root(distance2, per_distance);
-  lanes::inverse_root(metric2, per_metric);
+  lanes::inverse_root<2>(metric2, per_metric);
   const Floats distance = distance2 * per_distance;
   z0 = (g.radius - distance) * distance * per_metric * g.per_blur;
   z0 = z0 < kFarthest_sigmas ? z0 : z0 * 0.0F + kFarthest_sigmas;

@@ -3,8 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-
-#include "vision/prefetch.h"
+#include <limits>
 
 namespace nadir::tracker {
 namespace {
@@ -41,6 +40,7 @@ PlaneGrid::PlaneGrid(const calibration::PlaneMap& map, int width_px, int height_
       rows_((height_px - 1) / kSpacing_px + 2) {
   nodes_.reserve(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   constexpr double kHalf = 0.5 * kSpacing_px;
+  double finest_m2_per_px2 = std::numeric_limits<double>::infinity();
   const auto jacobian = [&map](double u, double v) -> Eigen::Matrix2d {
     return map.jacobian_m_per_px({u, v});
   };
@@ -48,18 +48,17 @@ PlaneGrid::PlaneGrid(const calibration::PlaneMap& map, int width_px, int height_
     for (int column = 0; column < columns_; ++column) {
       const double u = column * kSpacing_px;
       const double v = row * kSpacing_px;
-      LocalPlane node;
-      node.origin_m = map.plane_from_pixel({u, v});
-      node.slope = jacobian(u, v);
+      const Eigen::Matrix2d slope = jacobian(u, v);
       // Second derivatives by central differences of the first ones.
       const Eigen::Matrix2d by_u = (jacobian(u + kHalf, v) - jacobian(u - kHalf, v)) / kSpacing_px;
       const Eigen::Matrix2d by_v = (jacobian(u, v + kHalf) - jacobian(u, v - kHalf)) / kSpacing_px;
-      node.bend.col(0) = 0.5 * by_u.col(0);
-      node.bend.col(1) = 0.5 * (by_u.col(1) + by_v.col(0));
-      node.bend.col(2) = 0.5 * by_v.col(1);
-      nodes_.push_back(node);
+      Eigen::Matrix<double, 2, 3> bend;
+      bend << 0.5 * by_u.col(0), 0.5 * (by_u.col(1) + by_v.col(0)), 0.5 * by_v.col(1);
+      nodes_.push_back({map.plane_from_pixel({u, v}), slope.cast<float>(), bend.cast<float>()});
+      finest_m2_per_px2 = std::min(finest_m2_per_px2, std::abs(slope.determinant()));
     }
   }
+  finest_m_per_px_ = std::sqrt(finest_m2_per_px2);
 }
 
 std::array<int, 2> PlaneGrid::nearest(int u, int v) const {
@@ -69,12 +68,13 @@ std::array<int, 2> PlaneGrid::nearest(int u, int v) const {
 
 LocalPlane PlaneGrid::about(int u, int v) const {
   const std::array<int, 2> at = nearest(u, v);
-  return node(at).moved(u - at[0] * kSpacing_px, v - at[1] * kSpacing_px);
+  const Node& from = node(at);
+  return LocalPlane{from.origin_m, from.slope.cast<double>(), from.bend.cast<double>()}.moved(
+      u - at[0] * kSpacing_px, v - at[1] * kSpacing_px);
 }
 
 void PlaneGrid::fetch(const vision::PixelPoint& pixel) const {
-  const LocalPlane& place = node(nearest(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())));
-  vision::fetch(&place, sizeof(place));
+  __builtin_prefetch(&node(nearest(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()))));
 }
 
 Eigen::Vector2d PlaneGrid::plane_from_pixel(const vision::PixelPoint& pixel) const {

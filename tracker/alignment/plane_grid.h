@@ -39,6 +39,8 @@ class PlaneGrid {
   Eigen::Vector2d plane_from_pixel(const vision::PixelPoint& pixel) const;
   /// Square root of the area of a pixel.
   double metres_per_pixel(const vision::PixelPoint& pixel) const;
+  /// Of the pixel that shows least of the plane, about.
+  double finest_m_per_px() const { return finest_m_per_px_; }
   /// The pixel that shows a place, by Newton's method from a guess a few hundred pixels away at
   /// most; nothing if it does not end.
   std::optional<vision::PixelPoint> pixel_near(const Eigen::Vector2d& place_m,
@@ -50,9 +52,18 @@ class PlaneGrid {
  private:
   static constexpr int kSpacing_px = 8;
 
+  /// A LocalPlane in one line of the cache: the grid of a large picture is larger than caches. What
+  /// is not the place itself is multiplied by some pixels, so that single precision is good to
+  /// 1e-8 m.
+  struct alignas(64) Node {
+    Eigen::Vector2d origin_m;
+    Eigen::Matrix2f slope;
+    Eigen::Matrix<float, 2, 3> bend;
+  };
+
   /// Index of the node nearest to a pixel, as column and row.
   std::array<int, 2> nearest(int u, int v) const;
-  const LocalPlane& node(const std::array<int, 2>& at) const {
+  const Node& node(const std::array<int, 2>& at) const {
     return nodes_[static_cast<std::size_t>(at[1]) * static_cast<std::size_t>(columns_) +
                   static_cast<std::size_t>(at[0])];
   }
@@ -61,7 +72,8 @@ class PlaneGrid {
   int height_px_;
   int columns_;
   int rows_;
-  std::vector<LocalPlane> nodes_;
+  double finest_m_per_px_ = 0.0;
+  std::vector<Node> nodes_;
 };
 
 }  // namespace nadir::tracker
