@@ -101,6 +101,7 @@ class DelayedFusion {
   // The state between two intervals beside the filter's own.
   struct Track {
     std::optional<BodyRates> last_rates;
+    double last_interval_s = 0.0;  // for which these were measured or, in a gap, assumed
     std::optional<Timestamp> last_used;
   };
   struct Snapshot {

@@ -42,6 +42,7 @@ void DelayedFusion<L, E>::run(Filter& filter, Track& track, std::uint64_t index,
   const BodyRates held = track.last_rates.value_or(BodyRates{});
   const BodyRates previous = track.last_rates.value_or(interval.rates);
   const double interval_s = to_seconds(interval.to - from);
+  const double previous_s = track.last_rates ? track.last_interval_s : interval_s;
   Timestamp time = from;
   const auto predict_until = [&](Timestamp to) {
     if (to == time) return;
@@ -49,7 +50,7 @@ void DelayedFusion<L, E>::run(Filter& filter, Track& track, std::uint64_t index,
     if (interval.is_gap()) {
       filter.predict_gap(held, dt_s);
     } else {
-      filter.predict({interval.rates, previous, interval_s, dt_s},
+      filter.predict({interval.rates, previous, interval_s, dt_s, previous_s},
                      L::later(interval.nominal, to_seconds(time - from)));
     }
     time = to;
@@ -64,6 +65,7 @@ void DelayedFusion<L, E>::run(Filter& filter, Track& track, std::uint64_t index,
   predict_until(until);
   track.last_rates =
       interval.is_gap() ? settings_.filter.gap.rates(held, interval_s) : interval.rates;
+  track.last_interval_s = interval_s;
 }
 
 template <class L, OdometryErrorModel E>

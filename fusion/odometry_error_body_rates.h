@@ -64,6 +64,8 @@ class BodyRateError {
 
   CorrectedRates<kStates> corrected(const OdometryStep& step, const ErrorState& error) const {
     const Eigen::Vector3d rate = step.mean_rates.vector();
+    // Over this interval and not between the middles of both: a command jumps where its interval
+    // begins, and the robot follows all of the change from there on.
     const Eigen::Vector3d derivative = (rate - step.previous_rates.vector()) / step.interval_s;
     CorrectedRates<kStates> result;
     result.rates = BodyRates::from(rate - error.head<3>().cwiseProduct(rate) -

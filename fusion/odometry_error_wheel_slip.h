@@ -23,8 +23,9 @@ struct WheelSlipParameters {
   /// White noise of a rim speed measured over 0.02 s: quantisation and roughness of the ground.
   double rim_noise_mps = 0.006;
   /// What of a slip time cannot be learnt, as it changes within a tenth of a second or because the
-  /// wheel's measured acceleration is not the true one, s. White noise in proportion to the
-  /// acceleration: in a hard start or stop the poses are believed more than the wheels.
+  /// wheel's measured acceleration is not the true one, s. A slip that is not learnt lasts
+  /// for 0.1 s: white noise of intensity (sigma a)^2 0.1 s where the rim's acceleration is a, so in
+  /// a hard start or stop the poses are believed more than the wheels.
   double unlearnt_slip_sigma_s = 0.0;
 };
 
@@ -36,7 +37,8 @@ struct WheelSlipParameters {
 ///
 /// e_i and l_i are states of the filter (all scales, then all slip times), so a slip that lasts for
 /// several frames is an error that these frames explain, and not independent noise in each of
-/// them. Speeds and accelerations are the measured ones.
+/// them. Speeds and accelerations are the measured ones; of the squared acceleration that makes
+/// white noise, what rim_noise_mps alone is expected to make of it is taken away.
 template <int kWheels>
 class WheelSlipError {
   static_assert(kWheels >= 2 && kWheels <= kMaxWheels);
@@ -64,7 +66,7 @@ class WheelSlipError {
       rates_by_rims_.col(i) = geometry.body_rates(WheelValues::Unit(kWheels, i)).vector();
     }
     constexpr double kNoiseInterval_s = 0.02;
-    rim_intensity_ = square(parameters.rim_noise_mps) * kNoiseInterval_s;
+    rim_intensity_m2ps_ = square(parameters.rim_noise_mps) * kNoiseInterval_s;
     unlearnt_intensity_s3_ = square(parameters.unlearnt_slip_sigma_s) * kUnlearntFor_s;
   }
 
@@ -80,15 +82,22 @@ class WheelSlipError {
   CorrectedRates<kStates> corrected(const OdometryStep& step, const ErrorState& error) const {
     const Wheels speed = rims_by_rates_ * step.mean_rates.vector();
     const Wheels acceleration =
-        (speed - rims_by_rates_ * step.previous_rates.vector()) / step.interval_s;
+        (speed - rims_by_rates_ * step.previous_rates.vector()) / step.between_middles_s();
     const Wheels corrected_speed = speed - error.template head<kWheels>().cwiseProduct(speed) -
                                    error.template tail<kWheels>().cwiseProduct(acceleration);
     CorrectedRates<kStates> result;
     result.rates = BodyRates::from(rates_by_rims_ * corrected_speed);
     result.by_error.template leftCols<kWheels>() = -rates_by_rims_ * speed.asDiagonal();
     result.by_error.template rightCols<kWheels>() = -rates_by_rims_ * acceleration.asDiagonal();
+    // The mean rate over T has the variance rim_intensity / T. The square of a real acceleration
+    // keeps its mean; of the encoders' own, less than half is left.
+    const double encoders_m2ps4 = rim_intensity_m2ps_ *
+                                  (1.0 / step.previous_interval_s + 1.0 / step.interval_s) /
+                                  square(step.between_middles_s());
     const Wheels intensity =
-        (unlearnt_intensity_s3_ * acceleration.array().square() + rim_intensity_).matrix();
+        (unlearnt_intensity_s3_ * (acceleration.array().square() - encoders_m2ps4).max(0.0) +
+         rim_intensity_m2ps_)
+            .matrix();
     result.white_intensity = rates_by_rims_ * intensity.asDiagonal() * rates_by_rims_.transpose();
     return result;
   }
@@ -110,7 +119,7 @@ class WheelSlipError {
   WheelSlipParameters parameters_;
   Eigen::Matrix<double, kWheels, 3> rims_by_rates_;
   Eigen::Matrix<double, 3, kWheels> rates_by_rims_;
-  double rim_intensity_ = 0.0;          ///< of a rim speed's white noise, (m/s)^2 s
+  double rim_intensity_m2ps_ = 0.0;     ///< of a rim speed's white noise, (m/s)^2 s
   double unlearnt_intensity_s3_ = 0.0;  ///< the same for an acceleration of 1 m/s^2
 };
 

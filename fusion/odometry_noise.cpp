@@ -86,7 +86,7 @@ Line fit(std::span<const Point> points, double relative_variance) {
 double linear_acceleration_mps2(const OdometryStep& step) {
   return std::hypot(step.mean_rates.u_mps - step.previous_rates.u_mps,
                     step.mean_rates.v_mps - step.previous_rates.v_mps) /
-         step.interval_s;
+         step.between_middles_s();
 }
 
 CorrectedRates<0> AccelerationOdometryNoise::corrected(

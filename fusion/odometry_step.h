@@ -14,6 +14,12 @@ struct OdometryStep {
   BodyRates previous_rates;  ///< of the interval before; mean_rates where there was none
   double interval_s = 0.0;   ///< length of the whole interval, above 0
   double dt_s = 0.0;         ///< length of this part, above 0, at most interval_s
+  /// Length of the interval before, above 0; as long as this one unless stated.
+  double previous_interval_s = interval_s;
+
+  /// Between the middles of both intervals: a constant acceleration times this is the difference of
+  /// their mean rates.
+  double between_middles_s() const { return 0.5 * (previous_interval_s + interval_s); }
 };
 
 /// Measured rates as a model of the odometry's errors sees them. N: number of its error states.

@@ -67,8 +67,11 @@ PoseFate DriveCore::add_pose(const tracker::WirePose& pose) {
   gaps_.add(camera, pose.epoch, pose.frame);
   const auto capture = clocks_.robot_time(pose.epoch, pose.capture_ns);
   if (!capture) return PoseFate::kNoClock;
-  // Odometry first: a pose is inserted into what is known of the motion.
-  if (const auto joined = merger_.take()) give_odometry(*joined);
+  // A tick's odometry stays one interval, as pieces of it tell little of accelerations: a pose that
+  // is newer than what was given waits for the tick. Only after missed ticks can it not.
+  if (*capture > fusion_->latest_capture()) {
+    if (const auto joined = merger_.take()) give_odometry(*joined);
+  }
   fusion_->add_pose({.camera = camera,
                      .epoch = folded(pose.epoch),
                      .frame = pose.frame,

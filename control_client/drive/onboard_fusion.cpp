@@ -20,6 +20,9 @@ class FusionWith : public OnboardFusion {
   fusion::PoseVerdict add_pose(const fusion::VisionPose& pose) override {
     return fusion_.add_pose(pose).verdict;
   }
+  fusion::Timestamp latest_capture() const override {
+    return fusion_.now() + fusion_.settings().future_tolerance;
+  }
   std::optional<fusion::Estimate> estimate_at(fusion::Timestamp time) const override {
     return fusion_.estimate_at(time);
   }

@@ -44,6 +44,9 @@ class OnboardFusion {
   /// In the order of time.
   virtual fusion::OdometryVerdict add_odometry(const OdometryInterval& odometry) = 0;
   virtual fusion::PoseVerdict add_pose(const fusion::VisionPose& pose) = 0;
+  /// A pose that was captured later is refused. One that is newer than the odometry, but not newer
+  /// than this, waits for more of it.
+  virtual fusion::Timestamp latest_capture() const = 0;
   /// Nothing before the first pose.
   virtual std::optional<fusion::Estimate> estimate_at(fusion::Timestamp time) const = 0;
   virtual fusion::FusionHealth health() const = 0;

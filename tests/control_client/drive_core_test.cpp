@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/control_client/drive_rehearsal.h"
@@ -281,6 +283,53 @@ TEST(DriveCore, ATrackersClockThatIsSetStopsItUntilTheNewTimeIsKnown) {
   EXPECT_TRUE(was(rows, ClientMode::kStopped, ClientReason::kClockJump));
   EXPECT_TRUE(drives_at_the_end(rows));
   EXPECT_LT(quality_of(rehearsal.run(5.0)).position_rms_m, 0.002);
+}
+
+/// Where a core believes to be, and how surely, at ticks of 20 ms that get odometry every 5 ms;
+/// each pose, captured 5 ms after a tick, comes so many steps later.
+std::vector<fusion::Estimate> estimates_with_poses_after(int steps) {
+  using fusion::Timestamp;
+  const RobotModel model{RobotParameters{}};
+  DriveCore core(model, repeating(), standard_trajectory("circle"));
+  RandomStream random(7, RandomPurpose::kVision);
+  std::vector<fusion::Estimate> estimates;
+  Timestamp now = std::chrono::seconds(1000);
+  core.add_clock({.epoch = 1,
+                  .t1_ns = now.count(),
+                  .t2_ns = now.count(),
+                  .t3_ns = now.count(),
+                  .t4_ns = now.count()});
+  std::optional<std::pair<int, tracker::WirePose>> coming;
+  for (int i = 0; i < 200; ++i) {
+    const Timestamp before = now;
+    now += std::chrono::milliseconds(5);
+    core.add_odometry({before, now, {0.01 * random.normal(), 0.0, 0.0}});
+    if (i % 4 == 1) {
+      tracker::WirePose pose;
+      pose.camera = "cam0";
+      pose.epoch = 1;
+      pose.frame = static_cast<std::uint64_t>(i);
+      pose.capture_ns = now.count();
+      pose.robot.covariance = Eigen::Vector3d(1e-7, 1e-7, 1e-5).asDiagonal();
+      coming.emplace(i + steps, pose);
+    }
+    if (coming && coming->first == i) core.add_pose(coming->second);
+    core.step(now, 1);
+    if (core.has_ticked() && core.estimate()) estimates.push_back(*core.estimate());
+  }
+  return estimates;
+}
+
+TEST(DriveCore, WhenBetweenTwoTicksAPoseComesMakesNoDifference) {
+  const auto at_the_tick = estimates_with_poses_after(3);
+  ASSERT_GT(at_the_tick.size(), 40U);
+  for (const int steps : {0, 1, 2}) {
+    const auto earlier = estimates_with_poses_after(steps);
+    ASSERT_EQ(earlier.size(), at_the_tick.size());
+    EXPECT_EQ(fusion::pose_difference(earlier.back().pose, at_the_tick.back().pose).norm(), 0.0)
+        << steps;
+    EXPECT_EQ(earlier.back().covariance, at_the_tick.back().covariance) << steps;
+  }
 }
 
 TEST(DriveCore, TellsItsState) {

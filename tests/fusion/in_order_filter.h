@@ -30,6 +30,7 @@ InOrderResult<Linearization, OdometryError> run_in_order(
   if (starts_known) filter.start(feed.expected_start, feed.start_covariance);
   InOrderResult<Linearization, OdometryError> result;
   std::optional<BodyRates> last;
+  double last_s = 0.0;
   Timestamp time = feed.odometry.front().from;
   std::size_t next = 0;
   while (next < feed.frames.size() && feed.frames[next].vision.capture <= time) ++next;
@@ -44,7 +45,8 @@ InOrderResult<Linearization, OdometryError> run_in_order(
       } else {
         typename Linearization::Nominal nominal{};
         if constexpr (requires { nominal.rates; }) nominal = sample->nominal;
-        filter.predict({sample->rates, last.value_or(sample->rates), to_seconds(to - from), dt_s},
+        filter.predict({sample->rates, last.value_or(sample->rates), to_seconds(to - from), dt_s,
+                        last ? last_s : to_seconds(to - from)},
                        Linearization::later(nominal, to_seconds(time - from)));
       }
       time = until;
@@ -57,6 +59,7 @@ InOrderResult<Linearization, OdometryError> run_in_order(
     predict_until(to);
     last = sample == nullptr ? settings.gap.rates(last.value_or(BodyRates{}), to_seconds(to - from))
                              : sample->rates;
+    last_s = to_seconds(to - from);
   };
   for (const OdometrySample& sample : feed.odometry) {
     if (sample.from > time) pass(time, sample.from, nullptr);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fusion/delayed_fusion.h"
 #include "fusion/pose_filter.h"
 #include "tests/fusion/numeric_jacobian.h"
 #include "tests/fusion/random_stream.h"
@@ -93,6 +94,116 @@ TEST(WheelSlipError, WhatIsNotLearntIsNoiseInProportionToTheAcceleration) {
   }
   EXPECT_LT((extra(0.01) - expected).norm(), 1e-12 * expected.norm());
   EXPECT_THROW(Three(geometry(), {.unlearnt_slip_sigma_s = -0.01}), std::invalid_argument);
+}
+
+/// Mean white intensity of a model's wheels, (m/s)^2 s, while all rims change their speed by the
+/// same acceleration; as the encoders measure it, whose noise is the model's, in intervals of two
+/// lengths by turns. Means over time, as the motion's covariance adds up.
+double mean_rim_intensity_m2ps(const Three& model, double acceleration_mps2, double long_s,
+                               double short_s) {
+  test::RandomStream random(31);
+  const double walk = model.parameters().rim_noise_mps * std::sqrt(0.02);
+  constexpr int kIntervals = 40000;
+  double sum = 0.0;
+  double time_s = 0.0;
+  BodyRates before;
+  double before_s = 0.0;
+  for (int k = 0; k < kIntervals; ++k) {
+    const double length_s = k % 2 == 0 ? long_s : short_s;
+    // Faster and slower by turns: the square of the acceleration stays.
+    const double mean_mps = k % 2 == 0 ? 0.0 : acceleration_mps2 * 0.5 * (long_s + short_s);
+    WheelValues rims(3);
+    for (int i = 0; i < 3; ++i) rims[i] = mean_mps + walk / std::sqrt(length_s) * random.normal();
+    const BodyRates rates = geometry().body_rates(rims);
+    if (k > 0) {
+      const auto corrected =
+          model.corrected({rates, before, length_s, length_s, before_s}, Three::ErrorState::Zero());
+      // Rims of white noise w each have rates of w G G^T; G has an inverse.
+      const Eigen::Matrix3d g = geometry().rims_by_rates();
+      sum += length_s * (g * corrected.white_intensity * g.transpose()).trace() / 3.0;
+      time_s += length_s;
+    }
+    before = rates;
+    before_s = length_s;
+  }
+  return sum / time_s;
+}
+
+TEST(WheelSlipError, NoiseOfTheEncodersIsNoAcceleration) {
+  const WheelSlipParameters parameters{.unlearnt_slip_sigma_s = 0.01};
+  const double rim_m2ps = std::pow(parameters.rim_noise_mps, 2) * 0.02;
+  const auto excess = [&](double long_s, double short_s) {
+    return mean_rim_intensity_m2ps(Three(geometry(), parameters), 0.0, long_s, short_s) - rim_m2ps;
+  };
+  const auto encoders_part = [&](double long_s, double short_s) {
+    const double acceleration2 =
+        rim_m2ps * (1.0 / long_s + 1.0 / short_s) / std::pow(0.5 * (long_s + short_s), 2);
+    return std::pow(parameters.unlearnt_slip_sigma_s, 2) * 0.1 * acceleration2;
+  };
+  // What is left of z^2 - 1 where it is positive, z normal: sqrt(2 / (pi e)) = 0.484 in the mean.
+  EXPECT_NEAR(excess(0.02, 0.02), 0.484 * encoders_part(0.02, 0.02), 0.02 * rim_m2ps);
+  EXPECT_NEAR(excess(0.015, 0.005) / encoders_part(0.015, 0.005), 0.484, 0.02);
+  EXPECT_LT(excess(0.02, 0.02), 1.3 * rim_m2ps) << "2.5 if the encoders' part stayed";
+}
+
+TEST(WheelSlipError, EncodersWithoutNoiseShowAnAccelerationAsItIs) {
+  const Three model(geometry(), {.rim_noise_mps = 0.0, .unlearnt_slip_sigma_s = 0.01});
+  for (const double short_s : {0.02, 0.005}) {
+    EXPECT_NEAR(mean_rim_intensity_m2ps(model, 4.0, 0.02, short_s), std::pow(0.01 * 4.0, 2) * 0.1,
+                1e-12);
+  }
+}
+
+TEST(WheelSlipError, NoiseOfTheEncodersHidesNoAcceleration) {
+  const Three model(geometry(), {.unlearnt_slip_sigma_s = 0.01});
+  const double expected = std::pow(0.01 * 4.0, 2) * 0.1 + std::pow(0.006, 2) * 0.02;
+  for (const double short_s : {0.02, 0.005}) {
+    EXPECT_NEAR(mean_rim_intensity_m2ps(model, 4.0, 0.02, short_s), expected, 0.03 * expected);
+  }
+}
+
+TEST(WheelSlipError, SlipIsTakenOutOfIntervalsOfAnyLength) {
+  // Evenly faster and faster: each mean rate is that of the interval's middle.
+  const BodyRates acceleration{3.0, -2.0, 8.0};
+  const auto rates_at = [&](double t_s) { return BodyRates::from(t_s * acceleration.vector()); };
+  Eigen::Matrix<double, 6, 1> error;
+  error << 0.0, 0.0, 0.0, 0.02, 0.03, -0.01;
+  const auto measured = [&](double from_s, double to_s) {
+    const double middle_s = 0.5 * (from_s + to_s);
+    return measured_with(error, rates_at(middle_s), rates_at(middle_s - 1.0), 1.0);
+  };
+  const auto corrected =
+      Three().corrected({measured(0.015, 0.020), measured(0.0, 0.015), 0.005, 0.005, 0.015}, error);
+  EXPECT_LT((corrected.rates.vector() - rates_at(0.0175).vector()).norm(), 1e-12);
+}
+
+TEST(WheelSlipError, DelayedFusionTellsHowLongTheIntervalBeforeWas) {
+  const Three model(geometry(), {.unlearnt_slip_sigma_s = 0.01});
+  const PoseCovariance sure = Eigen::Vector3d(1e-6, 1e-6, 1e-4).asDiagonal();
+  DelayedFusion<AboutEstimate, Three>::Settings settings;
+  settings.filter.odometry_error = model;
+  DelayedFusion<AboutEstimate, Three> fusion(settings);
+  SlipFilter filter(settings.filter);
+  Timestamp time = std::chrono::seconds(1);
+  fusion.start(time, {}, sure);
+  filter.start({}, sure);
+  BodyRates before;
+  double before_s = 0.0;
+  for (const int length_ms : {15, 5, 20, 10}) {
+    const Timestamp to = time + std::chrono::milliseconds(length_ms);
+    const double length_s = to_seconds(to - time);
+    const BodyRates rates{before.u_mps + 0.05, 0.0, 0.1};
+    if (before_s == 0.0) {
+      filter.predict({rates, rates, length_s, length_s});
+    } else {
+      filter.predict({rates, before, length_s, length_s, before_s});
+    }
+    fusion.add_odometry({time, to, rates, {}});
+    time = to;
+    before = rates;
+    before_s = length_s;
+  }
+  EXPECT_EQ(fusion.filter().state().covariance, filter.state().covariance);
 }
 
 TEST(WheelSlipError, SlipTimesAreAStationaryGaussMarkovProcess) {
