@@ -9,6 +9,7 @@
 
 #include "control_client/drive/drive_config.h"
 #include "control_client/drive/drive_process.h"
+#include "control_client/drive/printed_config.h"
 #include "control_client/drive/realtime_priority.h"
 #include "control_client/drive/robot_kinds.h"
 #include "control_client/trajectory_file.h"
@@ -56,15 +57,15 @@ TrajectoryPtr trajectory_for(const DrivenRobot& robot, const std::string& name,
 
 void run_drive_command(const DriveOptions& options, const std::atomic<bool>& stop) {
   DriveConfig config = effective_config(options);
-  if (options.prints_config) {
-    fmt::print("{}", drive_config_yaml(config));
-    return;
-  }
   DriveTask task;
   task.robot = options.robot;
   task.body = load_driven_robot(config.robot_type, config.robot);
   if (!task.body.takes_volts && config.output == tracker::WheelCommandKind::kVolts) {
     config.output = tracker::WheelCommandKind::kBodyRates;
+  }
+  if (options.prints_config) {
+    fmt::print("{}", printed_config(config, task.body));
+    return;
   }
   task.trajectory = placed(trajectory_for(task.body, options.trajectory, config), config.place);
   task.simulates = options.simulates;

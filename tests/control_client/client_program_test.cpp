@@ -84,6 +84,43 @@ TEST(Client, FollowsATrajectoryOfOnesOwn) {
   EXPECT_NE(table.find("fusion"), std::string::npos) << table;
 }
 
+/// What `drive --print-config` prints with these arguments, and once more with what it printed, as
+/// a file elsewhere.
+std::string printed_config(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"drive", "--robot", "3", "--print-config"});
+  const std::string text = output_of(arguments);
+  const vision::ScratchFolder folder;
+  const auto file = folder.write("printed.yaml", text);
+  EXPECT_EQ(output_of({"drive", "--robot", "3", "--print-config", "--config", file.string()}),
+            text);
+  return text;
+}
+
+TEST(Client, PrintsWhatIsInForceSoThatItReadsBackAnywhere) {
+  namespace fs = std::filesystem;
+  const fs::path data = fs::relative(NADIR_DATA_DIR);
+  ASSERT_TRUE(data.is_relative());
+  const std::string omni4 =
+      printed_config({"--robot-file", (data / "robots" / "omni4.yaml").string()});
+  EXPECT_NE(omni4.find("omni4.yaml'\n"), std::string::npos) << omni4;
+  EXPECT_NE(omni4.find("output: volts\n"), std::string::npos) << omni4;
+  const std::string league =
+      printed_config({"--config", (data / "clients" / "league.yaml").string()});
+  EXPECT_NE(league.find("robot: '/"), std::string::npos) << league;
+  // The file says 20 rad/s; slip_tolerance allows less.
+  EXPECT_NE(league.find("tolerated_slip_s: 0.08\n"), std::string::npos) << league;
+  EXPECT_NE(league.find("natural_frequency_radps: "), std::string::npos) << league;
+  EXPECT_EQ(league.find("natural_frequency_radps: 20}"), std::string::npos) << league;
+}
+
+TEST(Client, PrintsTheOutputThatIsInForce) {
+  for (const char* type : {"differential", "rover"}) {
+    const std::string text = printed_config({"--robot-type", type});
+    EXPECT_NE(text.find("output: body_rates\n"), std::string::npos) << text;
+    EXPECT_EQ(text.find("inner:"), std::string::npos) << text;
+  }
+}
+
 TEST(Client, SaysInOneLineWhatIsWrong) {
   const vision::ScratchFolder folder;
   expect_refusal({"experiment", "e99"}, {"'e99'", "e1, e2"});
