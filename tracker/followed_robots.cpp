@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tracker/alignment/robot_place.h"
+#include "tracker/alignment/sensor_lesson.h"
 
 namespace nadir::tracker {
 namespace {
@@ -80,7 +81,7 @@ void FollowedRobots::follow(const vision::Frame& frame) {
   }
   needs_full_search_ = full_searches_due_ > 0;
   full_searches_due_ = std::max(0, full_searches_due_ - 1);
-  aligned_robots_ = frames_;  // so that in time each of them teaches, however many they are
+  aligned_in_frame_ = 0;
   for (FollowedRobot& robot : robots_) {
     robot.found = false;
     robot.continued = false;
@@ -225,10 +226,9 @@ bool FollowedRobots::refine(const vision::Frame& frame, std::size_t layout,
 
 // Every robot teaches while little is known of the camera, later every fourth, by turns.
 void FollowedRobots::teach(const cv::Mat& image, std::size_t layout) {
-  if (sensor_.blur_deviation_px() < kKnownBlur_px && ++aligned_robots_ % kRobotsPerLesson != 0) {
-    return;
-  }
-  aligners_[layout].teach(image, mosaic_, sensor_);
+  const bool is_known = sensor_.blur_deviation_px() < kKnownBlur_px;
+  const auto lesson = lesson_due(frames_, aligned_in_frame_++, is_known ? kRobotsPerLesson : 1);
+  if (lesson) aligners_[layout].teach(image, mosaic_, *lesson, sensor_);
 }
 
 void FollowedRobots::remember_aligned(std::size_t index, vision::CaptureTime now) {

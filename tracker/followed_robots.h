@@ -99,7 +99,7 @@ class FollowedRobots {
   std::optional<Mosaic> stated_mosaic_;
   Mosaic mosaic_ = Mosaic::kNone;
   unsigned frames_ = 0;
-  unsigned aligned_robots_ = 0;
+  unsigned aligned_in_frame_ = 0;
   vision::CaptureTime last_frame_{};
   double gap_s_ = 0.0;  ///< between the last two frames
   int full_searches_due_ = 1;

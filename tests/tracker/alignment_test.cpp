@@ -7,10 +7,12 @@
 #include <cmath>
 #include <memory>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "tests/tracker/synthetic_setup.h"
 #include "tracker/alignment/disc_shares.h"
 #include "tracker/alignment/pose_aligner.h"
+#include "tracker/alignment/sensor_lesson.h"
 
 namespace nadir::tracker {
 namespace {
@@ -212,6 +214,25 @@ TEST_F(LeagueRobot, IsNobodyElse) {
   EXPECT_FALSE(align(nowhere, nullptr, result));
 }
 
+// However many robots there are, of whatever number of discs, and however many share a lesson.
+TEST(SensorLesson, EveryDiscOfEveryRobotTeaches) {
+  for (const unsigned robots_per_lesson : {1U, 4U}) {
+    for (const unsigned discs : {2U, 4U, 5U}) {
+      for (unsigned robots = 1; robots <= 4 * discs; ++robots) {
+        std::vector<int> lessons(robots * discs);
+        const unsigned frames = 10 * discs * robots_per_lesson;
+        for (unsigned frame = 0; frame < frames; ++frame) {
+          for (unsigned robot = 0; robot < robots; ++robot) {
+            const auto lesson = lesson_due(frame, robot, robots_per_lesson);
+            if (lesson) ++lessons[robot * discs + *lesson % discs];
+          }
+        }
+        for (const int of_a_disc : lessons) ASSERT_EQ(of_a_disc, 10) << robots << " robots";
+      }
+    }
+  }
+}
+
 // NEES over robots of some frames; blur and noise are learnt on the way.
 TEST(PoseAligner, CovarianceHolds) {
   SyntheticCamera camera = synthetic_camera("pair_even", 6);
@@ -220,6 +241,7 @@ TEST(PoseAligner, CovarianceHolds) {
   SensorModel sensor(640, 480);
   double nees = 0.0;
   int count = 0;
+  unsigned lesson = 0;
   for (std::uint64_t frame = 0; frame < 60; ++frame) {
     const cv::Mat image = rendered_frame(camera.renderer, frame).image;
     for (const vision::RobotTruth& truth : camera.renderer.truth(frame)) {
@@ -227,7 +249,7 @@ TEST(PoseAligner, CovarianceHolds) {
       const fusion::PlanarPose pose{truth.x_m, truth.y_m, truth.heading_rad};
       ASSERT_TRUE(aligner.align(image, Mosaic::kNone, sensor, {pose, {truth.u_px, truth.v_px}},
                                 nullptr, {}, aligned));
-      aligner.teach(image, Mosaic::kNone, sensor);
+      aligner.teach(image, Mosaic::kNone, lesson++, sensor);
       if (frame < 10) continue;
       const Eigen::Vector3d error = fusion::pose_difference(aligned.pose_world_robot, pose);
       Eigen::Matrix3d covariance = aligned.covariance;

@@ -50,11 +50,12 @@ Poses NADIR_POSES(const vision::MarkerLayout& layout, const calibration::PlaneMa
   }
   tracker::PoseAligner aligner(layout, grid);
   tracker::AlignedPose aligned;
+  unsigned lesson = 0;
   for (const Picture& picture : pictures) {
     for (const Guess& guess : picture.guesses) {
       const bool found = aligner.align(picture.image, kind, sensor, {start(guess), guess.centre_px},
                                        nullptr, {}, aligned);
-      if (found) aligner.teach(picture.image, kind, sensor);
+      if (found) aligner.teach(picture.image, kind, lesson++, sensor);
       poses.push_back(numbers(found, aligned.pose_world_robot));
     }
   }

@@ -59,8 +59,8 @@ bool PoseAligner::align(const cv::Mat& image, Mosaic mosaic, const SensorModel& 
   return false;
 }
 
-void PoseAligner::teach(const cv::Mat& image, Mosaic mosaic, SensorModel& sensor) {
-  const std::size_t disc = taught_disc_++ % static_cast<std::size_t>(fit_->robot().disc_count);
+void PoseAligner::teach(const cv::Mat& image, Mosaic mosaic, unsigned lesson, SensorModel& sensor) {
+  const std::size_t disc = lesson % static_cast<std::size_t>(fit_->robot().disc_count);
   tracker::teach(image, mosaic, disc, *fit_, sensor,
                  {settings_.huber_sigmas, settings_.far_sigmas});
 }

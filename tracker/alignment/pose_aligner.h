@@ -49,9 +49,10 @@ class PoseAligner {
   bool align(const cv::Mat& image, Mosaic mosaic, const SensorModel& sensor, const PoseGuess& guess,
              const ExpectedLook* look, std::span<const Obstacle> obstacles, AlignedPose& result);
 
-  /// Tells the camera's model what the last aligned robot's pixels say of it, one disc at a time.
-  /// To be given the same frame, once.
-  void teach(const cv::Mat& image, Mosaic mosaic, SensorModel& sensor);
+  /// Tells the camera's model what the pixels of one disc of the last aligned robot say of it. To
+  /// be given the same frame, once. `lesson` counts the lessons of this robot: its discs take
+  /// turns.
+  void teach(const cv::Mat& image, Mosaic mosaic, unsigned lesson, SensorModel& sensor);
 
   const DiscTemplate& robot() const;
 
@@ -59,7 +60,6 @@ class PoseAligner {
   AlignmentSettings settings_;
   std::unique_ptr<RobotFit> fit_;
   vision::PixelFetch meanwhile_;
-  std::size_t taught_disc_ = 0;
 };
 
 }  // namespace nadir::tracker
