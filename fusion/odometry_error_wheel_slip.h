@@ -23,9 +23,9 @@ struct WheelSlipParameters {
   /// White noise of a rim speed measured over 0.02 s: quantisation and roughness of the ground.
   double rim_noise_mps = 0.006;
   /// What of a slip time cannot be learnt, as it changes within a tenth of a second or because the
-  /// wheel's measured acceleration is not the true one, s. A slip that is not learnt lasts
-  /// for 0.1 s: white noise of intensity (sigma a)^2 0.1 s where the rim's acceleration is a, so in
-  /// a hard start or stop the poses are believed more than the wheels.
+  /// wheel's measured acceleration is not the true one, s. A slip that is not learnt acts for a
+  /// tenth of a second, so it is white noise of intensity (sigma a)^2 * 0.1 s where the rim's
+  /// acceleration is a: in a hard start or stop the poses are believed more than the wheels.
   double unlearnt_slip_sigma_s = 0.0;
 };
 

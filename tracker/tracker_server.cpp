@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <thread>
 
 #include "tracker/camera_setup.h"
 #include "tracker/simulated_robots.h"
+#include "vision/pictures/codecs.h"
 #include "vision/sources/open_source.h"
 
 namespace nadir::tracker {
@@ -32,6 +32,7 @@ std::vector<Landmark> landmarks_of(const TrackerConfig& config) {
 TrackerServer::TrackerServer(const TrackerConfig& config, Console& console)
     : config_(config), console_(console), queue_(kQueueLength), landmarks_(landmarks_of(config)) {
   const bool draws = !config_.overlay.empty();
+  if (draws) vision::load_codecs();
   CameraThread::Shared shared{.console = &console_,
                               .publisher = nullptr,
                               .queue = &queue_,
@@ -137,7 +138,8 @@ void TrackerServer::write(const FinishedFrame& frame) {
 void TrackerServer::write_overlay(const FinishedFrame& frame) {
   const std::string prefix = cameras_.size() > 1 ? frame.report.camera + "_" : "";
   const auto file = config_.overlay / fmt::format("{}{:06}.png", prefix, frame.report.frame);
-  if (!cv::imwrite(file.string(), overlays_[frame.camera].draw(frame.image, frame.report))) {
+  if (!vision::codecs().write(file.string(),
+                              overlays_[frame.camera].draw(frame.image, frame.report))) {
     throw std::runtime_error(file.string() + ": cannot be written");
   }
 }

@@ -3,11 +3,11 @@
 #include "calibration/program/calibrate_pictures.h"
 
 #include <cstdint>
-#include <opencv2/imgcodecs.hpp>
 #include <span>
 
 #include "vision/input/input_error.h"
 #include "vision/input/text_file.h"
+#include "vision/pictures/codecs.h"
 #include "vision/sources/image_decoder.h"
 
 namespace nadir::calibration {
@@ -29,7 +29,7 @@ cv::Mat load_picture(const std::string& file) {
 void write_picture(const std::string& file, const cv::Mat& picture) {
   bool written = false;
   try {
-    written = cv::imwrite(file, picture);
+    written = vision::codecs().write(file, picture);
   } catch (const cv::Exception&) {  // an ending that is not known
     throw InputError({file}, "has no ending of a picture", "call it .png or .jpg");
   }

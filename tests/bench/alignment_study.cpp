@@ -103,6 +103,7 @@ class Study {
   tracker::PlaneGrid grid_;
   tracker::PoseAligner aligner_;
   tracker::SensorModel sensor_;
+  unsigned lessons_ = 0;
   CramerRaoBound bound_;
   double guess_px_;
   AlignmentStudy study_;
@@ -149,7 +150,7 @@ void Study::frame(std::uint64_t number, bool counts) {
     const bool found =
         aligner_.align(image, which_.mosaic, sensor_, guess, nullptr, others, aligned);
     const double time_us = thread_cpu_us() - start_us;
-    if (found) aligner_.teach(image, which_.mosaic, sensor_);
+    if (found) aligner_.teach(image, which_.mosaic, lessons_++, sensor_);
     if (!counts) continue;
     ++study_.robots;
     if (!found) {

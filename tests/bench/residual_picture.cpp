@@ -52,7 +52,8 @@ std::vector<AlignedPose> align_all(const cv::Mat& bgr, std::span<const tracker::
       if (!workshop.aligner.align(bgr, tracker::Mosaic::kNone, workshop.sensor,
                                   {robot.pose_world_robot, robot.centre_px}, nullptr, {}, pose))
         continue;
-      workshop.aligner.teach(bgr, tracker::Mosaic::kNone, workshop.sensor);
+      workshop.aligner.teach(bgr, tracker::Mosaic::kNone, static_cast<unsigned>(lesson),
+                             workshop.sensor);
       poses.push_back(pose);
     }
   }

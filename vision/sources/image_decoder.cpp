@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <exception>
-#include <opencv2/imgcodecs.hpp>
+
+#include "vision/pictures/codecs.h"
 
 namespace nadir::vision {
 namespace {
@@ -47,6 +48,7 @@ const char* decode_status_text(DecodeStatus status) {
 
 DecodeStatus decode_image(std::span<const std::uint8_t> bytes, cv::Mat& image) {
   if (!is_complete(bytes)) return DecodeStatus::kIncomplete;
+  const Codecs& opencv = codecs();
   try {
     // Only a view: OpenCV asks for a matrix, which knows no constness.
     const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1,
@@ -54,7 +56,7 @@ DecodeStatus decode_image(std::span<const std::uint8_t> bytes, cv::Mat& image) {
     // Decoding straight into `image` would save an allocation that costs less than a hundredth of
     // the decoding, but OpenCV 4.6 then hides failures: the picture of before stands there as if it
     // were this one.
-    image = cv::imdecode(view, cv::IMREAD_COLOR);
+    image = opencv.decode(view);
     return image.empty() ? DecodeStatus::kNotAnImage : DecodeStatus::kDecoded;
   } catch (const std::exception&) {
     return DecodeStatus::kNotAnImage;

@@ -15,7 +15,8 @@ enum class DecodeStatus {
 const char* decode_status_text(DecodeStatus status);
 
 /// Decodes a compressed picture (PNG, JPEG, BMP, PPM, TIFF) to CV_8UC3, blue green red, in a buffer
-/// of its own. The image's content is undefined unless the status is kDecoded. Never throws.
+/// of its own. The image's content is undefined unless the status is kDecoded. Throws
+/// only where the decoders are not installed (`codecs`).
 ///
 /// Incomplete pictures are refused although decoders fill what is missing with grey: a robot must
 /// not be measured in half a frame.

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgcodecs.hpp>  // names of parameters only
 #include <stdexcept>
 
+#include "vision/pictures/codecs.h"
 #include "vision/synthetic/random_stream.h"
 
 namespace nadir::vision {
@@ -89,7 +90,7 @@ void write_recording(Renderer& renderer, std::uint64_t seed, std::uint64_t frame
     renderer.render(frame, image);
     const std::string name = fmt::format("{:06d}.{}", frame, is_jpeg ? "jpg" : "png");
     const std::filesystem::path file = pictures / name;
-    if (!cv::imwrite(file.string(), image, parameters)) {
+    if (!codecs().write(file.string(), image, parameters)) {
       throw std::runtime_error(file.string() + ": cannot be written");
     }
     times += fmt::format("{},{}\n", name, renderer.capture_time(frame).time_since_epoch().count());
